@@ -1,0 +1,50 @@
+"""LineUp: computing chain-based physical transformation, step by step.
+
+Every public name is here; each is imported when it is first used.
+"""
+
+from importlib import import_module
+from typing import Any
+
+_HOME = {
+    "VoxelSolid": "solid",
+    "VoxelPath": "solid",
+    "Motion": "solid",
+    "Folding": "solid",
+    "Certificate": "solid",
+    "Design": "solid",
+    "frames": "kinematics",
+    "certify": "judging",
+    "certify_path": "judging",
+    "voxelize": "voxelization",
+    "mend": "voxelization",
+    "models": "catalog",
+    "model": "catalog",
+    "reeb_graph": "reeb",
+    "traverse": "reeb",
+    "layered_path": "layered",
+    "PATH_METHODS": "layered",
+    "path_bound": "bounds",
+    "unfold": "motion",
+    "MOTION_METHODS": "motion",
+    "fold": "folding",
+    "FOLD_METHODS": "folding",
+    "trim": "trimming",
+    "save": "storage",
+    "load": "storage",
+    "lineup": "pipeline",
+}
+
+__all__ = sorted(_HOME)
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'lineup' has no attribute {name!r}")
+    value = getattr(import_module(f".{_HOME[name]}", __name__), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return __all__
