@@ -1,0 +1,51 @@
+# `make` sets everything up and reproduces Table 2; `make test` runs the tests. README.md tells more.
+.DEFAULT_GOAL := reproduce
+
+PYTHON ?= python3
+VENV   ?= .venv
+BIN    := $(VENV)/bin
+STAMP  := $(VENV)/.installed
+EXTRAS := notebooks,exact,test
+
+# Without a display the window must come from EGL, or VTK crashes at the first picture.
+ifeq ($(shell uname -s)$(DISPLAY),Linux)
+export VTK_DEFAULT_OPENGL_WINDOW ?= vtkEGLRenderWindow
+endif
+
+reproduce: $(STAMP)  ## Table 2 of the paper: results/table2.csv, .md, .tex
+	$(BIN)/lineup table2
+
+test: $(STAMP)  ## The default tests (add the long ones with: .venv/bin/pytest -m slow)
+	$(BIN)/python -m pytest -n 2 -q
+
+lint: $(STAMP)  ## Style and types
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy --strict lineup
+
+lab: $(STAMP)  ## JupyterLab on the first notebook
+	$(BIN)/jupyter lab notebooks/00_overview.ipynb
+
+notebooks: $(STAMP)  ## Execute every notebook again from its .py half
+	$(BIN)/jupytext --set-formats ipynb,py:percent --execute notebooks/*.py
+
+setup: $(STAMP)  ## The virtual environment alone
+
+clean:  ## Remove results and caches; the virtual environment stays
+	rm -rf results out .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find lineup tests -name __pycache__ -prune -exec rm -rf {} +
+
+help:  ## This list
+	@sed -nE 's/^([a-z]+):.*## (.*)/make \1	\2/p' $(MAKEFILE_LIST)
+
+# uv installs several times faster than pip; without it pip does the same.
+$(STAMP): pyproject.toml constraints.txt
+	@$(PYTHON) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] < (3, 14))' || { \
+	  echo "LineUp needs Python 3.11 to 3.13, and '$(PYTHON)' is not: name one with 'make PYTHON=python3.12'" >&2; exit 1; }
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt uv || echo "no uv, going on with pip"
+	{ test -x $(BIN)/uv && $(BIN)/uv pip install --quiet --python $(BIN)/python --constraint constraints.txt --editable ".[$(EXTRAS)]"; } \
+	  || $(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[$(EXTRAS)]"
+	touch $@
+
+.PHONY: reproduce test lint lab notebooks setup clean help
