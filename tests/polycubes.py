@@ -1,0 +1,30 @@
+"""Random solids for property tests."""
+
+from typing import Any
+
+import numpy as np
+from hypothesis import assume
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from lineup import grid
+
+STEPS = [tuple(d) for d in grid.DIRECTIONS.tolist()]
+
+
+@st.composite
+def polycubes(draw: Any, max_voxels: int = 40) -> NDArray[np.bool_]:
+    """A bool array with one face-connected, void-free component of 1 to `max_voxels` voxels."""
+    voxels: set[tuple[int, int, int]] = set()
+    rim = {(0, 0, 0)}
+    for _ in range(draw(st.integers(1, max_voxels))):
+        x, y, z = draw(st.sampled_from(sorted(rim)))
+        voxels.add((x, y, z))
+        rim |= {(x + dx, y + dy, z + dz) for dx, dy, dz in STEPS}
+        rim -= voxels
+    points = np.array(sorted(voxels))
+    points -= points.min(axis=0)
+    occupancy = np.zeros(points.max(axis=0) + 1, bool)
+    occupancy[tuple(points.T)] = True
+    assume(not grid.voids(occupancy).any())
+    return occupancy
