@@ -1,0 +1,29 @@
+"""Tasks for the tests of sweeps: quick ones that succeed, fail or take their process down."""
+
+import os
+import signal
+import time
+from pathlib import Path
+
+CALLS = "LINEUP_TEST_CALLS"
+"""Environment variable naming the file that every call is noted in."""
+
+
+def work(model: str, blocks: int, seed: int = 0, *, folder: Path, progress) -> dict:
+    with open(os.environ[CALLS], "a") as calls:
+        calls.write(f"{model}-{blocks}\n")
+    progress("folding")
+    if model == "refused":
+        raise ValueError("blocks must\nbe positive")
+    if model == "broken":
+        raise RuntimeError("no good")
+    if model == "crash":
+        os.kill(os.getpid(), signal.SIGSEGV)
+    if model == "gone":
+        os._exit(3)
+    if model == "interrupt":
+        raise KeyboardInterrupt
+    if model == "slow":
+        time.sleep(0.3)
+    (folder / f"{model}.txt").write_text("saved")
+    return {"voxels": blocks * 2, "length": 2 * blocks + seed}

@@ -1,0 +1,206 @@
+"""Sweeps: what is run, what is kept, and that one bad task costs no other its result."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import fake_tasks
+import pytest
+
+from lineup import sweep
+from lineup._sources import source_files
+from lineup.sweep import Experiment, read_experiment, run_sweep, tasks
+
+ROOT = Path(__file__).parents[1]
+
+
+@pytest.fixture
+def calls(tmp_path, monkeypatch):
+    """The calls made to the fake task so far."""
+    log = tmp_path / "calls.txt"
+    log.touch()
+    monkeypatch.setenv(fake_tasks.CALLS, str(log))
+    monkeypatch.setitem(sweep.TASKS, "fake", "fake_tasks:work")
+    return lambda: log.read_text().split()
+
+
+def experiment(*models, blocks=(3,), **more):
+    grids = [{"model": list(models), "blocks": list(blocks)}]
+    return Experiment(title="t", task="fake", grids=grids, **more)
+
+
+def test_tasks_stand_in_file_order_the_last_list_fastest(calls, tmp_path):
+    found = tasks(experiment("b", "a", blocks=(2, 1), fixed={"seed": 5}), tmp_path)
+    assert [t.label for t in found] == ["b-2", "b-1", "a-2", "a-1"]
+    assert found[0].settings == {"seed": 5, "model": "b", "blocks": 2}
+
+
+@pytest.mark.parametrize("engine", sweep.ENGINES)
+def test_failures_are_rows_and_the_others_go_on(calls, tmp_path, engine):
+    models = ["a", "refused", "slow", "broken", "b"]
+    if engine == "processes":
+        models[2:2] = ["crash", "gone"]
+    table = run_sweep(experiment(*models), tmp_path / "out", engine=engine, workers=2)
+    assert list(table.model) == models
+    failure = dict(zip(table.model, table.failure, strict=True))
+    assert failure["refused"] == "blocks must be positive"
+    assert failure["broken"] == "RuntimeError: no good"
+    if engine == "processes":
+        assert failure["crash"] == "the process died (SIGSEGV)"
+        assert failure["gone"] == "the process died (exit code 3)"
+    fine = table[table.failure == ""]
+    assert list(fine.model) == ["a", "slow", "b"]
+    assert set(fine.length) == {6}
+    assert sorted(calls()) == sorted(f"{m}-3" for m in models)
+
+
+def test_the_table_does_not_depend_on_engine_or_workers(calls, tmp_path):
+    grid = experiment("slow", "a", "refused", "b", blocks=(1, 2))
+    runs = [("serial", 1), ("processes", 1), ("processes", 3)]
+    tables = [run_sweep(grid, tmp_path / f"{e}{w}", engine=e, workers=w) for e, w in runs]
+    assert all(table.equals(tables[0]) for table in tables[1:])
+
+
+def test_a_second_run_redoes_failures_only(calls, tmp_path):
+    grid = experiment("a", "refused", "b")
+    told = []
+    first = run_sweep(grid, tmp_path, progress=lambda task, text: told.append((task.label, text)))
+    assert told[:2] == [("a-3", "folding"), ("a-3", "done")]
+    assert told[3] == ("refused-3", "failed: blocks must be positive")
+    assert run_sweep(grid, tmp_path).equals(first)
+    assert calls() == ["a-3", "refused-3", "b-3", "refused-3"]
+    assert (tmp_path / "a-3" / "a.txt").read_text() == "saved"
+
+
+@pytest.mark.parametrize("damage", ["", "{", "[]", '{"key": "other"}'])
+def test_a_damaged_result_is_made_anew(calls, tmp_path, damage):
+    first = run_sweep(experiment("a"), tmp_path)
+    (tmp_path / "a-3" / "row.json").write_text(damage)
+    assert run_sweep(experiment("a"), tmp_path).equals(first)
+    assert calls() == ["a-3", "a-3"]
+
+
+def test_other_settings_input_or_source_are_other_tasks(calls, tmp_path, monkeypatch):
+    def key(model="cube", **more):
+        return tasks(experiment(model, **more), tmp_path)[0].key
+
+    keys = [key(), key(fixed={"seed": 1}), key(blocks=(4,))]
+    mesh = tmp_path / "cube.obj"
+    for text in ("v 0 0 0", "v 0 0 1"):
+        mesh.write_text(text)
+        keys.append(key(str(mesh)))
+    monkeypatch.setenv("LINEUP_MODELS", str(tmp_path))
+    keys.append(key())
+    monkeypatch.setattr(sweep, "source_files", lambda module: [mesh])
+    keys.append(key())
+    assert len(set(keys)) == len(keys)
+    assert key() == keys[-1]
+
+
+def test_source_files_follow_imports():
+    names = [file.stem for file in source_files("lineup.storage")]
+    assert names == ["_record", "grid", "kinematics", "notation", "solid", "storage"]
+
+
+def test_an_interrupted_run_resumes(calls, tmp_path):
+    grid = experiment("a", "interrupt", "b")
+    with pytest.raises(KeyboardInterrupt):
+        run_sweep(grid, tmp_path)
+    table = run_sweep(experiment("a", "b"), tmp_path)
+    assert list(table.failure) == ["", ""]
+    assert calls() == ["a-3", "interrupt-3", "b-3"]
+
+
+INTERRUPTED = """
+import sys
+
+if __name__ == "__main__":
+    import lineup.sweep as s
+    s.TASKS["fake"] = "fake_tasks:work"
+    grids = [{"model": ["slow"], "blocks": list(range(40))}]
+    grid = s.Experiment(title="t", task="fake", grids=grids)
+    s.run_sweep(grid, sys.argv[1], engine="processes", workers=2,
+                progress=lambda task, text: print(task.label, text, flush=True))
+"""
+
+
+def test_an_interrupt_ends_the_worker_processes_too(calls, tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(INTERRUPTED)
+    run = subprocess.Popen(
+        [sys.executable, script, tmp_path / "out"],
+        env=os.environ | {"PYTHONPATH": str(ROOT / "tests")},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    for line in run.stdout:
+        if line.endswith("done\n"):
+            break
+    run.send_signal(signal.SIGINT)
+    _, errors = run.communicate(timeout=20)
+    assert errors.count("KeyboardInterrupt") == 1
+    made = len(calls())
+    assert 1 <= made < 40
+    whole = [json.loads(f.read_text()) for f in (tmp_path / "out").glob("*/row.json")]
+    assert all(result["row"] for result in whole)
+    assert len(calls()) == made
+
+
+BAD = {
+    "missing": (None, "no experiment file"),
+    "not yaml": ("a: [1", "not YAML in line"),
+    "not a mapping": ("- 1", "valid dictionary"),
+    "no grids": ("{title: t, task: fake}", "grids"),
+    "empty list": ("{title: t, task: fake, grids: [{model: []}]}", "at least 1 item"),
+    "unknown field": ("{title: t, task: fake, grids: [{model: [a]}], colour: red}", "colour"),
+    "nested list": ("{title: t, task: fake, grids: [{model: [[a]]}]}", "grids.0.model"),
+}
+
+
+@pytest.mark.parametrize("fault", BAD)
+def test_a_bad_experiment_file_is_refused_in_one_line(tmp_path, fault):
+    text, message = BAD[fault]
+    file = tmp_path / "bad.yaml"
+    if text is not None:
+        file.write_text(text)
+    with pytest.raises((ValueError, FileNotFoundError), match="bad.yaml") as caught:
+        read_experiment(file)
+    assert message in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"task": "paint"}, "unknown task 'paint'; known: table2, fake"),
+        ({"grids": [{"model": "a", "blocks": 1, "size": 3}]}, "unknown setting 'size'"),
+        ({"grids": [{"model": "a"}]}, "needs the setting 'blocks'"),
+        ({"grids": [{"model": ["a", "a"], "blocks": 1}]}, "two tasks .* 'a-1'"),
+    ],
+)
+def test_settings_that_do_not_fit_are_refused_before_anything_runs(
+    calls, tmp_path, change, message
+):
+    whole = {"title": "t", "task": "fake", "grids": [{"model": "a", "blocks": 1}]}
+    with pytest.raises(ValueError, match=message):
+        run_sweep(Experiment(**whole | change), tmp_path)
+    assert not calls()
+
+
+def test_unknown_engine_workers_and_variant(calls, tmp_path):
+    with pytest.raises(ValueError, match="unknown engine 'threads'; known: serial, processes"):
+        run_sweep(experiment("a"), tmp_path, engine="threads")
+    with pytest.raises(ValueError, match="workers must be at least 1, got 0"):
+        run_sweep(experiment("a"), tmp_path, workers=0)
+    with pytest.raises(ValueError, match="unknown variant 'quick'; this experiment has: none"):
+        run_sweep(experiment("a"), tmp_path, variant="quick")
+
+
+def test_a_variant_replaces_the_grids(calls, tmp_path):
+    quick = {"quick": [{"model": "b", "blocks": 1}]}
+    table = run_sweep(experiment("a", variants=quick), tmp_path, variant="quick")
+    assert list(table.model) == ["b"]
