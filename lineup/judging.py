@@ -17,6 +17,8 @@ _MALFORMED = {
     _sweeps.DOOR: "must turn by value 1 or -1 about a lattice line that does not hold its joints",
 }
 
+_MIXED = "its bars neither turn all to one direction nor all from one"
+
 
 def certify(motion: Motion, diameter: float = 0.999, max_bend_deg: float = 90.0) -> Certificate:
     """Judge a whole motion, at every instant, from its start to its last pose (Section 6).
@@ -123,11 +125,8 @@ class _Trial:
     def _moves(self) -> Certificate | None:
         moves = self.motion.moves.astype(np.int64)
         while self.checked < len(moves):
-            if moves[self.checked, 0] == Move.TILT:
-                refused = self._tilt(self.checked)
-                self.checked += 1
-            else:
-                refused = self._turns(moves)
+            tilts = moves[self.checked, 0] == Move.TILT
+            refused = self._tilt() if tilts else self._turns(moves)
             if refused:
                 return refused
         return None
@@ -155,33 +154,35 @@ class _Trial:
             return self._refuse(f"bend of {bend_deg:g} degrees at joint {a}", where)
         return self._refuse(f"malformed: {_named(moves[where])} {_MALFORMED[fault]}", where)
 
-    def _tilt(self, where: int) -> Certificate | None:
-        _, joint, other, value = (int(x) for x in self.motion.moves[where])
+    def _tilt(self) -> Certificate | None:
+        where, move = self.checked, self.motion.moves[self.checked]
+        self.checked += 1
+        _, joint, other, value = (int(x) for x in move)
         fault = _malformed_tilt(self.motion, joint, other, value)
         if fault:
-            return self._refuse(f"malformed: {_named(self.motion.moves[where])} {fault}", where)
+            return self._refuse(f"malformed: {_named(move)} {fault}", where)
         bars = np.diff(self.pose, axis=0)
         targets = grid.DIRECTIONS[self.motion.poses[value]].astype(np.int64)
         turning = (bars != targets).any(axis=1)
         if (bars[turning] * targets[turning]).any() or not turning.any():
             return self._refuse(
-                f"malformed: {_named(self.motion.moves[where])} must turn some bars, "
+                f"malformed: {_named(move)} must turn some bars, "
                 "each to a direction perpendicular to it",
                 where,
             )
         fault = _not_monotone(bars, targets, turning)
         if fault:
             return self._refuse(f"tilt of a path that is not monotone: {fault}", where)
-        bend_deg, joint = _largest_tilt_bend(bars, targets, turning)
-        self.bend_deg = max(self.bend_deg, bend_deg)
-        if bend_deg > self.max_bend_deg:
-            return self._refuse(f"bend of {bend_deg:g} degrees at joint {joint}", where)
         self.pose[1:] = self.pose[0] + targets.cumsum(axis=0)
         fault, _ = _not_simple(self.pose)
         if fault:
             self.clearance = 0.0
             return self._refuse(f"the tilt's last pose is not simple: {fault}", where)
-        self.was_straight = self.was_straight or bool((targets == targets[0]).all())
+        bend_deg, joint = _largest_bend(self.pose)
+        self.bend_deg = max(self.bend_deg, bend_deg)
+        if bend_deg > self.max_bend_deg:
+            return self._refuse(f"bend of {bend_deg:g} degrees at joint {joint}", where)
+        self.was_straight = self.was_straight or bend_deg == 0
         return None
 
     def _end(self) -> Certificate | None:
@@ -243,19 +244,30 @@ def _malformed_tilt(motion: Motion, joint: int, other: int, value: int) -> str:
 def _not_monotone(
     bars: NDArray[np.int64], targets: NDArray[np.int64], turning: NDArray[np.bool_]
 ) -> str:
-    """Why the accordion lemma does not hold; "" if it does.
+    """Why the accordion lemma holds neither forwards nor backwards; "" if it does."""
+    reasons = [
+        _not_accordion(bars, targets, turning),
+        _not_accordion(targets, bars, turning),
+    ]
+    if "" in reasons:
+        return ""
+    return next((reason for reason in reasons if reason != _MIXED), _MIXED)
+
+
+def _not_accordion(
+    folded: NDArray[np.int64], unfolded: NDArray[np.int64], turning: NDArray[np.bool_]
+) -> str:
+    """Why the accordion lemma does not hold from `folded` to `unfolded`; "" if it does.
 
     Between two points of the chain let the turning bars make a displacement d over an arc of
     length N >= |d|, and the resting ones r across and h >= 0 along the one direction. At angle a
     from the folded pose the squared distance is cos(a)^2 d^2 + r^2 + (h + N sin(a))^2, because r
-    is perpendicular to d, and that is at least d^2 + r^2 + h^2.
+    is perpendicular to d, and that is at least d^2 + r^2 + h^2. Neighbours that both turn have
+    the cosine (their first) cos(a)^2 + sin(a)^2, so that every bend is largest at an end.
     """
-    if (targets[turning] == targets[turning][0]).all():
-        folded, along = bars, targets[turning][0]
-    elif (bars[turning] == bars[turning][0]).all():
-        folded, along = targets, bars[turning][0]
-    else:
-        return "its bars neither turn all to one direction nor all from one"
+    along = unfolded[turning][0]
+    if (unfolded[turning] != along).any():
+        return _MIXED
     against = (folded == -along).all(axis=1)
     if against.any():
         return f"bar {int(np.flatnonzero(against)[0])} steps against the others' direction"
@@ -264,28 +276,6 @@ def _not_monotone(
     if rests_beside.any():
         return f"bar {int(np.flatnonzero(rests_beside)[0])} rests on an axis of bars that turn"
     return ""
-
-
-def _largest_tilt_bend(
-    bars: NDArray[np.int64], targets: NDArray[np.int64], turning: NDArray[np.bool_]
-) -> tuple[float, int]:
-    """Largest bend during a tilt, and its joint.
-
-    Where two neighbours turn, the cosine is mean + even cos 2a + odd sin 2a, least inside if
-    odd < 0; where one turns, the other lies on a lattice axis and the cosine is monotone.
-    """
-    if len(bars) < 2:
-        return 0.0, -1
-    at_start = (bars[1:] * bars[:-1]).sum(axis=1)
-    at_end = (targets[1:] * targets[:-1]).sum(axis=1)
-    cosines = np.minimum(at_start, at_end).astype(np.float64)
-    both = turning[1:] & turning[:-1]
-    mean, even = (at_start + at_end) / 2, (at_start - at_end) / 2
-    odd = ((bars[1:] * targets[:-1]).sum(axis=1) + (targets[1:] * bars[:-1]).sum(axis=1)) / 2
-    dips = both & (odd < 0)
-    cosines[dips] = (mean - np.hypot(even, odd))[dips]
-    k = int(cosines.argmin())
-    return float(np.degrees(np.arccos(np.clip(cosines[k], -1, 1)))), k + 1
 
 
 def certify_path(path: VoxelPath, solid: VoxelSolid) -> Certificate:
@@ -328,7 +318,7 @@ def _inside_fault(path: VoxelPath, solid: VoxelSolid) -> tuple[str, int]:
         return f"refinement {path.refinement} is not a positive number", -1
     occupancy = _refined(solid, path.refinement)
     voxels = path.voxels
-    in_range: grid.BoolArray = ((voxels >= 0) & (voxels < occupancy.shape)).all(axis=1)
+    in_range = np.logical_and.reduce((voxels >= 0) & (voxels < occupancy.shape), axis=1)
     inside: grid.BoolArray = in_range & occupancy[tuple(np.where(in_range[:, None], voxels, 0).T)]
     if not inside.all():
         k = int(np.flatnonzero(~inside)[0])

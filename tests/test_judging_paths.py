@@ -1,0 +1,183 @@
+"""Paths that the judge must certify, and the faults that it must find."""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from oracles import alternates, enclosing, layer_runs
+from polycubes import STEPS, polycubes
+
+import lineup as lu
+from lineup import grid
+
+# A ring of two columns on a base: up the first, over the top and down the second.
+#   z = 2   a a a
+#   z = 1   b . c      side view, one voxel deep but for the base of two
+#   z = 0   d d d
+RING = np.ones((3, 1, 3), bool)
+RING[1, 0, 1] = False
+# Two pillars on a plate of 4 x 2; the path climbs each pillar and comes back.
+PILLARS = np.zeros((4, 2, 3), bool)
+PILLARS[:, :, 0] = True
+PILLARS[[0, 3], :, 1:] = True
+PILLARS_WORD = "UUNDD" + "E" + "SE" + "N" + "E" + "UUSDD"
+
+
+def walk(word, start=(0, 0, 0)):
+    steps = [grid.DIRECTIONS[grid.LETTERS.index(c)] for c in word]
+    return np.vstack([start, start + np.cumsum(steps, axis=0)])
+
+
+def rest(occupancy, voxels):
+    left = occupancy.copy()
+    left[tuple(np.asarray(voxels).T)] = False
+    return np.argwhere(left)
+
+
+def described(voxels, occupancy):
+    """Visits by flooding, with each node named 10 times its component plus 3."""
+    runs = layer_runs(voxels, occupancy)
+    names = [r[2] for r in runs]
+    rows = [(a, b, 10 * c + 3, enclosing(names, k)) for k, (a, b, c) in enumerate(runs)]
+    return np.array(rows)
+
+
+NESTED = walk(PILLARS_WORD)
+VISITS = described(NESTED, PILLARS)
+
+
+def pillars(**change):
+    fields = {"voxels": NESTED, "visits": VISITS, "dropped": rest(PILLARS, NESTED)}
+    return lu.VoxelPath(**(fields | change))
+
+
+def changed(rows, k, column, value):
+    rows = np.array(rows)
+    rows[k, column] = value
+    return rows
+
+
+def test_visits_of_the_pillars_by_hand():
+    """Plate, pillar up to its top and back, plate, other pillar and back, plate."""
+    ids = {"plate": 3, "left": 13, "right": 43, "left top": 23, "right top": 53}
+    assert len(NESTED) == 16
+    names = ["plate", "left", "left top", "left", "plate", "right", "right top", "right", "plate"]
+    assert [v[3] for v in VISITS.tolist()] == [0, 1, 2, 1, 0, 1, 2, 1, 0]
+    assert len({VISITS[names.index(n), 2] for n in ids}) == 5
+    assert [names.index(n) for n in names] == [
+        VISITS[:, 2].tolist().index(node) for node in VISITS[:, 2]
+    ]
+
+
+GOOD = {
+    "pillars": (pillars(), PILLARS),
+    "pillars, not layered": (pillars(visits=np.empty((0, 4), int)), PILLARS),
+    "part of the ring": (
+        lu.VoxelPath(walk("EEUUW"), dropped=rest(RING, walk("EEUUW"))),
+        RING,
+    ),
+    "refined": (
+        lu.VoxelPath(
+            walk("UEN"), refinement=2, dropped=rest(np.ones((2, 2, 2), bool), walk("UEN"))
+        ),
+        np.ones((1, 1, 1), bool),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", GOOD)
+def test_good_paths_are_certified(name):
+    path, occupancy = GOOD[name]
+    verdict = lu.certify_path(path, lu.VoxelSolid(occupancy))
+    assert (verdict.ok, verdict.reason, verdict.where) == (True, "certified", -1)
+
+
+FAULTS = {
+    "no voxel": ({"voxels": np.empty((0, 3), int)}, -1, "it has no voxel"),
+    "voxel twice": ({"voxels": walk("ENWSUU")[:6]}, 4, "steps 0 and 4 visit one voxel"),
+    "gap": ({"voxels": np.delete(NESTED, 9, axis=0)}, 8, "voxels 8 and 9 do not share a face"),
+    "odd length": ({"voxels": NESTED[:-1]}, 14, "15 voxels, not an even number"),
+    "outside the solid": ({"voxels": walk("EU")[1:]}, 1, "voxel (1, 0, 1) of step 1 is outside"),
+    "outside the grid": ({"voxels": walk("EEEES")}, 4, "voxel (4, 0, 0) of step 4 is outside"),
+    "below the grid": ({"voxels": walk("WWN")}, 1, "voxel (-1, 0, 0) of step 1 is outside"),
+    "wrong refinement": ({"refinement": 2}, 12, "voxel (3, 1, 2) of step 12 is outside"),
+    "no refinement": ({"refinement": 0}, -1, "refinement 0 is not a positive number"),
+    "nothing dropped": ({"voxels": NESTED[:-2]}, -1, "dropped is not the 2 voxels"),
+    "dropped what it visits": ({"dropped": NESTED[:1]}, -1, "(it has 1 rows)"),
+    "no visit": ({"visits": VISITS[:-1]}, 15, "no visit 8 of steps 15 to 16"),
+    "one visit too many": (
+        {"visits": np.vstack([VISITS, [(16, 16, 3, 0)]])},
+        15,
+        "10 visits, but the path has 9 runs",
+    ),
+    "cut visit": (
+        {"visits": np.vstack([VISITS[:4], [(6, 8, 3, 0), (8, 10, 3, 0)], VISITS[5:]])},
+        None,
+        "one run in a component",
+    ),
+    "shifted visit": ({"visits": changed(VISITS, 2, 0, 3)}, 2, "no visit 2 of steps 2 to 4"),
+    "node of two components": (
+        {"visits": changed(changed(VISITS, 5, 2, VISITS[1, 2]), 7, 2, VISITS[1, 2])},
+        None,
+        "is the name of two components",
+    ),
+    "component of two nodes": (
+        {"visits": changed(VISITS, 7, 2, 99)},
+        None,
+        "one component is called node",
+    ),
+    "depth too small": (
+        {"visits": changed(VISITS, 2, 3, 1)},
+        2,
+        "visit 2 has depth 1, but 2 nodes",
+    ),
+    "depth on the MSP": ({"visits": changed(VISITS, 4, 3, 1)}, None, "visit 4 has depth 1, but 0"),
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_planted_faults_are_refused(name):
+    change, where, words = FAULTS[name]
+    verdict = lu.certify_path(pillars(**change), lu.VoxelSolid(PILLARS))
+    assert not verdict.ok
+    assert words in verdict.reason
+    assert where is None or verdict.where == where
+
+
+def test_alternating_nodes_are_refused():
+    """Bottom, top, bottom, top: the second bottom leaves a top that is not finished."""
+    block = np.ones((4, 1, 2), bool)
+    voxels = walk("UEDEUED")
+    visits = described(voxels, block)
+    path = lu.VoxelPath(voxels, visits, rest(block, voxels))
+    verdict = lu.certify_path(path, lu.VoxelSolid(block))
+    assert "alternate instead of nesting" in verdict.reason
+    assert verdict.where == 3
+
+
+@settings(max_examples=150, deadline=None)
+@given(polycubes(40), st.data())
+def test_visits_agree_with_flooding(occupancy, data):
+    """Any walk in any solid: certified just where no two nodes alternate."""
+    voxels = [data.draw(st.sampled_from(list(map(tuple, np.argwhere(occupancy).tolist()))))]
+    free = {tuple(v) for v in np.argwhere(occupancy).tolist()} - set(voxels)
+    while True:
+        x, y, z = voxels[-1]
+        onward = [v for v in ((x + a, y + b, z + c) for a, b, c in STEPS) if v in free]
+        if not onward:
+            break
+        voxels.append(data.draw(st.sampled_from(onward)))
+        free.remove(voxels[-1])
+    voxels = voxels[: len(voxels) // 2 * 2]
+    assume(voxels)
+    visits = described(voxels, occupancy)
+    solid = lu.VoxelSolid(occupancy)
+    path = lu.VoxelPath(np.array(voxels), visits, rest(occupancy, voxels))
+    verdict = lu.certify_path(path, solid)
+    assert verdict.ok != alternates(visits[:, 2].tolist())
+    row, column = data.draw(st.integers(0, len(visits) - 1)), data.draw(st.integers(0, 3))
+    wrong = changed(visits, row, column, visits[row, column] + data.draw(st.sampled_from([-1, 1])))
+    renamed = column == 2 and (visits[:, 2] == visits[row, 2]).sum() == 1
+    if not renamed:
+        bad = lu.VoxelPath(path.voxels, wrong, path.dropped)
+        assert not lu.certify_path(bad, solid).ok
