@@ -4,13 +4,14 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import ndimage
 
 from . import grid
 from ._jit import kernel
 from ._record import record
 from .grid import BoolArray, FloatArray, IntArray
-from .meshes import Surface
+from .meshes import FaceArray, Surface
 
 _PILOT_CELLS = 48
 _BATCH = 500_000
@@ -122,67 +123,99 @@ def _inside_cells(surface: Surface, cell: float) -> tuple[BoolArray, FloatArray]
     # A margin of at least two cells stays empty; whole blocks let an open mesh be looked over.
     shape = _BLOCK * np.ceil(((high - low) / cell + 4) / _BLOCK).astype(int)
     origin = (low + high) / 2 - shape * cell / 2
-    band = np.zeros(tuple(shape), np.bool_)
-    _mark_surface(surface.vertices, surface.faces, origin, cell, band)
-    band = ndimage.binary_dilation(band, np.ones((3, 3, 3), bool))
     if not surface.closed:
-        band |= _level_blocks(surface, origin, cell, band.shape)
-    # The winding number crosses a half only in the band: elsewhere one cell speaks for its region.
-    region, n = grid.components(~band)
-    flat = region.ravel()
-    first = np.zeros(n + 1, np.int64)
-    first[flat[::-1]] = np.arange(flat.size - 1, -1, -1)
-    spoken = np.zeros(n + 1, np.bool_)
-    spoken[1:] = _inside(surface, origin, cell, np.unravel_index(first[1:], band.shape))
-    inside = spoken[region]
-    inside[band] = _inside(surface, origin, cell, np.nonzero(band))
-    return inside, origin
+        return _inside_open(surface, origin, cell, tuple(shape)), origin
+    winding = np.zeros(tuple(shape), np.int16)
+    _cross_columns((surface.vertices - origin) / cell - 0.5, surface.faces, winding)
+    np.cumsum(winding, axis=2, out=winding)
+    return winding > 0, origin
 
 
-def _inside(
-    surface: Surface, origin: FloatArray, cell: float, index: tuple[np.ndarray, ...]
-) -> BoolArray:
-    answers = np.empty(len(index[0]), np.bool_)
-    for start in range(0, len(answers), _BATCH):
-        batch = slice(start, start + _BATCH)
-        points = origin + (np.stack([i[batch] for i in index], axis=1) + 0.5) * cell
-        answers[batch] = surface.winding(points) > 0.5
-    return answers
-
-
-def _level_blocks(
+def _inside_open(
     surface: Surface, origin: FloatArray, cell: float, shape: tuple[int, ...]
 ) -> BoolArray:
-    """Cells of the blocks through which the winding number crosses a half, holes included."""
-    coarse = tuple(n // _BLOCK for n in shape)
-    inside = _inside(
-        surface, origin, cell * _BLOCK, tuple(i.ravel() for i in np.indices(coarse))
-    ).reshape(coarse)
+    """Inside where there are holes: the fast winding number, wherever it may cross a half.
+
+    Off the surface it varies smoothly, so blocks of cells far from the surface and unlike none of
+    their neighbours are decided by their centre.
+    """
+    blocks = tuple(n // _BLOCK for n in shape)
+    everywhere = np.ones(blocks, np.bool_)
+    inside = _winds_round(surface, origin, cell * _BLOCK, everywhere).reshape(blocks)
+    touched = np.zeros(blocks, np.bool_)
+    _mark_surface((surface.vertices - origin) / (cell * _BLOCK), surface.faces, touched)
     near = np.ones((3, 3, 3), bool)
-    mixed = ndimage.binary_dilation(inside, near) & ~ndimage.binary_erosion(inside, near)
-    cells: BoolArray = np.kron(mixed, np.ones((_BLOCK,) * 3, bool))
+    unlike = ndimage.binary_dilation(inside, near) & ~ndimage.binary_erosion(inside, near)
+    unsure = unlike | ndimage.binary_dilation(touched, near)
+    block = np.ones((_BLOCK,) * 3, bool)
+    cells, ask = np.kron(inside, block), np.kron(unsure, block)
+    cells[ask] = _winds_round(surface, origin, cell, ask)
     return cells
 
 
+def _winds_round(surface: Surface, origin: FloatArray, cell: float, ask: BoolArray) -> BoolArray:
+    index = np.argwhere(ask)
+    batches = [index[start : start + _BATCH] for start in range(0, len(index), _BATCH)]
+    return np.concatenate([surface.winding(origin + (b + 0.5) * cell) > 0.5 for b in batches])
+
+
 @kernel
-def _mark_surface(
-    vertices: FloatArray,
-    faces: np.ndarray[tuple[int, int], np.dtype[np.int64]],
-    origin: FloatArray,
-    cell: float,
-    band: BoolArray,
-) -> None:
-    """Set cells so that every point of the surface is in one of them or in a neighbour."""
+def _cross_columns(vertices: FloatArray, faces: FaceArray, change: NDArray[np.int16]) -> None:
+    """Add to each cell the change of the winding number since the cell below it.
+
+    Cell (i, j, k) has its centre at (i, j, k). A vertical line through a centre enters the solid
+    where it meets a face looking down, and leaves it where one looks up. Lines through an edge or
+    a vertex are taken as shifted by an infinitesimal amount, so that they meet one face of each
+    fan, and an edge is judged alike by both its faces because its ends are taken in index order.
+    """
+    sign = np.empty(3)
+    area = np.empty(3)
+    for f in range(faces.shape[0]):
+        corners = vertices[faces[f]]
+        for i in range(_first(corners[:, 0].min()), _first(corners[:, 0].max())):
+            for j in range(_first(corners[:, 1].min()), _first(corners[:, 1].max())):
+                for e in range(3):
+                    a, b = faces[f, (e + 1) % 3], faces[f, (e + 2) % 3]
+                    way = 1.0 if a < b else -1.0
+                    area[e], side = _side(vertices[min(a, b)], vertices[max(a, b)], i, j)
+                    sign[e], area[e] = way * side, way * area[e]
+                if sign[0] != sign[1] or sign[1] != sign[2] or sign[0] == 0:
+                    continue
+                whole = area.sum()
+                height = (area * corners[:, 2]).sum() / whole if whole else corners[:, 2].max()
+                change[i, j, _first(height)] -= np.int16(sign[0])
+
+
+@kernel
+def _first(height: float) -> int:
+    """The first integer above or at `height`."""
+    return int(np.ceil(height))
+
+
+@kernel
+def _side(a: FloatArray, b: FloatArray, x: float, y: float) -> tuple[float, float]:
+    """Twice the area of (a, b, p) seen from above, and the side of a-b that p, nudged, is on.
+
+    The nudge is to p + (ε, ε²), with ε -> 0.
+    """
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    area = dx * (y - a[1]) - dy * (x - a[0])
+    return area, np.sign(area if area else -dy if dy else dx)
+
+
+@kernel
+def _mark_surface(vertices: FloatArray, faces: FaceArray, touched: BoolArray) -> None:
+    """Set unit cells so that each point of the surface is in one of them or in a neighbour."""
     for f in range(faces.shape[0]):
         a = vertices[faces[f, 0]]
         u = vertices[faces[f, 1]] - a
         v = vertices[faces[f, 2]] - a
         longest = np.sqrt(max((u * u).sum(), (v * v).sum(), ((u - v) ** 2).sum()))
-        n = max(1, int(np.ceil(longest / (0.9 * cell))))
+        n = max(1, int(np.ceil(longest / 0.9)))
         for i in range(n + 1):
             for j in range(n + 1 - i):
-                p = (a + (i / n) * u + (j / n) * v - origin) / cell
-                band[int(p[0]), int(p[1]), int(p[2])] = True
+                p = a + (i / n) * u + (j / n) * v
+                touched[int(p[0]), int(p[1]), int(p[2])] = True
 
 
 @kernel

@@ -63,20 +63,20 @@ def cannon(p: FloatArray) -> FloatArray:
         return (t * axis[0], 0.0, 1.0 + t * axis[2])
 
     barrel = union(
-        cylinder(p, along(-0.8), along(2.1), 0.36, 0.24),
-        cylinder(p, along(1.85), along(2.15), 0.33),
-        cylinder(p, along(0.5), along(0.72), 0.37),
-        cylinder(p, along(-0.9), along(-0.6), 0.42),
-        cylinder(p, along(-1.15), along(-0.85), 0.14),
-        ball(p, along(-1.2), 0.2),
+        cylinder(p, along(-0.8), along(2.1), 0.32, 0.22),
+        cylinder(p, along(1.85), along(2.15), 0.31),
+        cylinder(p, along(0.5), along(0.72), 0.34),
+        cylinder(p, along(-0.9), along(-0.6), 0.38),
+        cylinder(p, along(-1.15), along(-0.85), 0.13),
+        ball(p, along(-1.2), 0.19),
     )
-    bore = cylinder(p, along(1.3), along(2.6), 0.13)
+    bore = cylinder(p, along(1.3), along(2.6), 0.12)
     side = mirrored(p)
-    wheel = cylinder(side, (0, 0.5, 0.75), (0, 0.74, 0.75), 0.75)
-    hub = cylinder(side, (0, 0.4, 0.75), (0, 0.9, 0.75), 0.17)
-    axle = cylinder(p, (0, -0.6, 0.75), (0, 0.6, 0.75), 0.14)
-    trail = limb(p, [(0, 0, 0.72), (-1.9, 0, 0.17)], [0.17, 0.17])
-    spade = box(p, (-1.95, 0, 0.17), (0.12, 0.34, 0.17))
+    wheel = cylinder(side, (0, 0.56, 0.85), (0, 0.8, 0.85), 0.85)
+    hub = cylinder(side, (0, 0.4, 0.85), (0, 0.98, 0.85), 0.19)
+    axle = cylinder(p, (0, -0.6, 0.85), (0, 0.6, 0.85), 0.16)
+    trail = limb(p, [(0, 0, 0.8), (-2.0, 0, 0.17)], [0.17, 0.17])
+    spade = box(p, (-2.05, 0, 0.17), (0.12, 0.36, 0.17))
     return union(cut(barrel, bore), wheel, hub, axle, trail, spade)
 
 
@@ -210,6 +210,70 @@ def _deer_without_antlers(p: FloatArray) -> FloatArray:
     )
 
 
+def deer(p: FloatArray) -> FloatArray:
+    """A deer with two prongs of antler on each side."""
+    side = mirrored(p)
+    stem = limb(side, [(1.0, 0.1, 2.42), (0.86, 0.3, 2.75), (0.92, 0.42, 3.05)], [0.1, 0.09, 0.08])
+    prong = limb(side, [(0.86, 0.28, 2.7), (1.2, 0.3, 2.85)], [0.08, 0.075])
+    return union(_deer_without_antlers(p), stem, prong)
+
+
+def horse(p: FloatArray) -> FloatArray:
+    """A standing horse with mane and tail."""
+    side = mirrored(p)
+    barrel = ellipsoid(p, (0, 0, 1.35), (0.85, 0.36, 0.4))
+    rump = ellipsoid(p, (-0.6, 0, 1.42), (0.42, 0.36, 0.4))
+    neck = limb(p, [(0.6, 0, 1.5), (1.0, 0, 2.0), (1.2, 0, 2.3)], [0.34, 0.22, 0.18])
+    mane = plate(p, [(0.35, 1.75), (0.6, 1.8), (1.12, 2.45), (0.98, 2.5)], 1, 0, 0.08)
+    head = limb(p, [(1.2, 0, 2.3), (1.65, 0, 1.95)], [0.2, 0.13])
+    ear = limb(side, [(1.12, 0.1, 2.42), (1.1, 0.14, 2.62)], [0.08, 0.06])
+    foreleg = limb(
+        side, [(0.6, 0.2, 1.2), (0.62, 0.2, 0.65), (0.62, 0.2, 0.08)], [0.21, 0.13, 0.12]
+    )
+    hindleg = limb(
+        side, [(-0.7, 0.2, 1.3), (-0.85, 0.2, 0.7), (-0.78, 0.2, 0.08)], [0.27, 0.14, 0.12]
+    )
+    tail = limb(p, [(-0.95, 0, 1.55), (-1.2, 0, 1.3), (-1.25, 0, 0.75)], [0.1, 0.14, 0.1])
+    return union(blend(0.1, barrel, rump, neck, foreleg, hindleg, tail), head, mane, ear)
+
+
+def camel(p: FloatArray) -> FloatArray:
+    """A camel with two humps."""
+    side = mirrored(p)
+    barrel = ellipsoid(p, (0, 0, 1.35), (0.9, 0.38, 0.4))
+    front_hump = limb(p, [(0.38, 0, 1.5), (0.36, 0, 2.0)], [0.32, 0.14])
+    back_hump = limb(p, [(-0.42, 0, 1.5), (-0.46, 0, 2.0)], [0.32, 0.14])
+    neck = limb(
+        p,
+        [(0.75, 0, 1.4), (1.15, 0, 1.25), (1.4, 0, 1.65), (1.45, 0, 2.15)],
+        [0.28, 0.2, 0.16, 0.15],
+    )
+    head = limb(p, [(1.42, 0, 2.22), (1.85, 0, 2.12)], [0.18, 0.12])
+    ear = limb(side, [(1.38, 0.12, 2.35), (1.34, 0.18, 2.5)], [0.07, 0.06])
+    foreleg = limb(
+        side, [(0.62, 0.2, 1.2), (0.64, 0.2, 0.6), (0.64, 0.2, 0.08)], [0.19, 0.12, 0.13]
+    )
+    hindleg = limb(
+        side, [(-0.7, 0.2, 1.25), (-0.82, 0.2, 0.65), (-0.76, 0.2, 0.08)], [0.22, 0.12, 0.13]
+    )
+    tail = limb(p, [(-0.9, 0, 1.45), (-1.08, 0, 0.95)], [0.09, 0.08])
+    trunk = blend(0.1, barrel, neck, foreleg, hindleg)
+    return union(blend(0.06, trunk, front_hump, back_hump), head, ear, tail)
+
+
+def teddy(p: FloatArray) -> FloatArray:
+    """A teddy bear sitting with its arms out."""
+    p = mirrored(p)
+    belly = ellipsoid(p, (0, 0, 0.85), (0.6, 0.66, 0.75))
+    head = ellipsoid(p, (0.05, 0, 1.95), (0.52, 0.58, 0.52))
+    ear = ellipsoid(p, (0, 0.5, 2.42), (0.13, 0.24, 0.24))
+    muzzle = ellipsoid(p, (0.52, 0, 1.82), (0.24, 0.26, 0.2))
+    arm = limb(p, [(0.05, 0.5, 1.3), (0.3, 1.05, 1.15)], [0.24, 0.22])
+    leg = limb(p, [(0.2, 0.42, 0.3), (1.0, 0.62, 0.27)], [0.3, 0.27])
+    foot = ellipsoid(p, (1.12, 0.64, 0.38), (0.18, 0.28, 0.38))
+    return union(blend(0.06, belly, head, arm, leg), ear, muzzle, foot)
+
+
 def chair(p: FloatArray) -> FloatArray:
     """A chair with a rail across its back."""
     side = mirrored(p)
@@ -242,7 +306,7 @@ MODELS: dict[str, Implicit] = {
     f.__name__: f
     for f in (
         bunny, decocube, cannon, two_holed_torus, duck, armadillo, dinosaur, aircraft, elephant,
-        elk, chair, table, mug,
+        elk, chair, table, mug, teddy, horse, camel, deer,
     )
 }  # fmt: skip
 """The procedural models by name."""

@@ -28,7 +28,8 @@ TOLERANCE = 0.02
 
 _PITCHES = np.linspace(0.955, 1.045, 7)
 _WIDE_PITCHES = np.linspace(0.7, 1.4, 57)
-_OFFSETS = tuple(product((0.0, 0.25, 0.5, 0.75), repeat=3))
+_FEW = 4096
+"""Up to this count a solid is coarse enough that quarter offsets and fine cells tell."""
 _SHARES = (0.3, 0.7)
 """A voxel with less of it inside than the first is not taken, one with more than the last is."""
 _COUNT_WEIGHT = 0.1
@@ -155,7 +156,7 @@ class _Cut:
 
 def _cells_wanted(voxels: int) -> int:
     """Sampling cells inside; rounded up so that nearby counts share one sampling."""
-    per_voxel = 125 if voxels <= 4096 else 64
+    per_voxel = 216 if voxels <= _FEW else 64
     return int(per_voxel * 2 ** np.ceil(np.log2(max(voxels, 256))))
 
 
@@ -163,8 +164,8 @@ def _best_fit(sampling: Sampling, voxels: int) -> _Fit:
     """The best fit of the near pitches, or of a wide range where those miss the count."""
     usual = (sampling.volume / voxels) ** (1 / 3)
     fits: list[_Fit] = []
-    for scales in (_PITCHES, _WIDE_PITCHES):
-        cuts = list(_cuts(sampling, voxels, usual * scales))
+    for scales, steps in ((_PITCHES, 4 if voxels <= _FEW else 2), (_WIDE_PITCHES, 2)):
+        cuts = list(_cuts(sampling, voxels, usual * scales, steps))
         cuts.sort(key=lambda cut: (cut.miss, -cut.worth))
         fits += [_fit(sampling, cut) for cut in cuts[:_SHORTLIST]]
         if any(_miss(fit.size, voxels) == 0 for fit in fits):
@@ -187,10 +188,12 @@ def _miss(n: int, voxels: int) -> float:
     return max(0.0, abs(n - voxels) - TOLERANCE * voxels)
 
 
-def _cuts(sampling: Sampling, voxels: int, pitches: FloatArray) -> Iterator[_Cut]:
+def _cuts(sampling: Sampling, voxels: int, pitches: FloatArray, steps: int) -> Iterator[_Cut]:
+    """The best cut of each pitch and of each offset in `steps` steps a voxel along each axis."""
+    offsets = list(product(np.arange(steps) / steps, repeat=3))
     for pitch in pitches.tolist():
         total = sampling.volume / pitch**3
-        for offset in _OFFSETS:
+        for offset in offsets:
             shares = sampling.coverage(_lines(sampling, pitch, offset), pitch)
             fullest = np.sort(shares[shares > 0], axis=None)[::-1]
             inside = np.cumsum(fullest)
