@@ -12,7 +12,6 @@ import os
 import re
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
-from glob import escape
 from importlib import import_module
 from inspect import signature
 from pathlib import Path
@@ -22,6 +21,7 @@ import pandas as pd
 import yaml
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
+from . import catalog
 from ._sources import source_files
 from .engines import ENGINES, Function, Outcome
 from .storage import first_error, plain, write_whole
@@ -216,15 +216,18 @@ def _label(values: tuple[Scalar, ...]) -> str:
 
 
 def _inputs(settings: dict[str, Scalar]) -> list[bytes]:
-    """Contents of the files that settings name, directly or as models of a mesh folder."""
-    meshes = os.environ.get("LINEUP_MODELS")
+    """What settings name: the contents of files, and where a model of the catalogue comes from."""
+    catalogue = catalog.models().set_index("name")["source"]
+    meshes = os.environ.get(catalog.FOLDER_VARIABLE)
     found: list[bytes] = []
     for value in settings.values():
-        if isinstance(value, str) and value:
-            files = [Path(value)]
-            if meshes:
-                files += sorted(Path(meshes).glob(f"{escape(value)}.*"))
-            found += [file.read_bytes() for file in files if file.is_file()]
+        if isinstance(value, str) and Path(value).is_file():
+            found.append(Path(value).read_bytes())
+        elif value in catalogue:
+            source = str(catalogue[value])
+            found.append(source.encode())
+            if meshes and source == "folder":
+                found.append((Path(meshes) / f"{value}.ply").read_bytes())
     return found
 
 

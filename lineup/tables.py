@@ -136,8 +136,8 @@ def table2(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def _shortfall(row: dict[Any, Any]) -> str:
-    if row["failure"]:
-        return str(row["failure"])
+    if isinstance(row["failure"], str) and row["failure"]:
+        return row["failure"]
     missed = []
     if pd.notna(row["blocks"]) and row["length"] != 2 * row["blocks"]:
         missed.append(f"length {row['length']:g} instead of {2 * row['blocks']:g}")

@@ -27,3 +27,16 @@ def work(model: str, blocks: int, seed: int = 0, *, folder: Path, progress) -> d
         time.sleep(0.3)
     (folder / f"{model}.txt").write_text("saved")
     return {"voxels": blocks * 2, "length": 2 * blocks + seed}
+
+
+def table2_task(model: str, blocks: int, seed: int, *, folder: Path, progress) -> dict:
+    progress("fold")
+    if model == "cannon":
+        raise ValueError("no such mesh")
+    return {
+        "source": "procedural",
+        "length": 2 * blocks - 2 * (model == "duck"),
+        "straight": True,
+        "certified": True,
+        "seconds_fold": 0.5,
+    }

@@ -88,16 +88,19 @@ def test_other_settings_input_or_source_are_other_tasks(calls, tmp_path, monkeyp
         return tasks(experiment(model, **more), tmp_path)[0].key
 
     keys = [key(), key(fixed={"seed": 1}), key(blocks=(4,))]
-    mesh = tmp_path / "cube.obj"
+    mesh = tmp_path / "duck.ply"
     for text in ("v 0 0 0", "v 0 0 1"):
         mesh.write_text(text)
         keys.append(key(str(mesh)))
+    keys.append(key("duck"))
     monkeypatch.setenv("LINEUP_MODELS", str(tmp_path))
-    keys.append(key())
+    keys.append(key("duck"))
+    mesh.write_text("v 0 0 2")
+    keys.append(key("duck"))
     monkeypatch.setattr(sweep, "source_files", lambda module: [mesh])
-    keys.append(key())
+    keys.append(key("duck"))
     assert len(set(keys)) == len(keys)
-    assert key() == keys[-1]
+    assert key("duck") == keys[-1]
 
 
 def test_source_files_follow_imports():

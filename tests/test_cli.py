@@ -1,0 +1,238 @@
+"""The command line: what it says, what it writes, and how it ends."""
+
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import lineup as lu
+from lineup import cli, sweep
+from lineup.kinematics import Move
+
+CORNER = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 2, 0]], np.int32)
+SWING = np.array([[Move.SWING, 1, 2, 0]], np.int32)
+
+
+@pytest.fixture
+def fake(monkeypatch):
+    monkeypatch.setitem(sweep.TASKS, "table2", "fake_tasks:table2_task")
+
+
+@pytest.fixture
+def lineup(capsys, tmp_path, monkeypatch):
+    """Run one command line in an empty folder: (exit code, stdout, stderr)."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*args):
+        code = cli.run([str(arg) for arg in args])
+        said = capsys.readouterr()
+        return code, said.out, said.err
+
+    return run
+
+
+def a_folding(moves=SWING, straight=True):
+    motion = lu.Motion(CORNER, moves, 0.999, 90.0, straight, "straight")
+    return lu.Folding(lu.VoxelPath(CORNER), motion)
+
+
+def one_line(err):
+    return err.startswith("lineup: error: ") and err.count("\n") == 1
+
+
+def test_help_is_quick_and_names_every_command():
+    command = [Path(sys.executable).with_name("lineup"), "--help"]
+    times = []
+    for _ in range(3):
+        begin = time.perf_counter()
+        said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+        times.append(time.perf_counter() - begin)
+    for name in ("table2", "run", "verify", "models", "voxelize", "path", "unfold", "sweep"):
+        assert f"  {name} " in said
+    assert min(times) < 1
+
+
+def test_help_loads_no_heavy_package():
+    code = "import sys, lineup.cli as c; c.run(['--help']); print(sorted(sys.modules))"
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout
+    assert "'lineup.cli'" in loaded
+    for heavy in ("numpy", "pandas", "numba", "pydantic"):
+        assert f"'{heavy}'" not in loaded
+
+
+def test_no_command_is_help(lineup):
+    code, out, err = lineup()
+    assert code == 0
+    assert "table2" in out
+    assert not err
+
+
+def test_table2_quick_runs_the_experiment_file(lineup, fake, tmp_path):
+    code, out, err = lineup("table2", "--quick", "--workers", 2)
+    assert code == 1
+    assert err.splitlines() == [
+        "falls short: cannon: no such mesh",
+        "falls short: duck: length 398 instead of 400",
+    ]
+    assert "[5/5] " in out
+    assert "3 of 5" in out
+    table = pd.read_csv(tmp_path / "results" / "table2-quick.csv")
+    assert table.model.tolist() == ["bunny", "decocube", "cannon", "two_holed_torus", "duck"]
+    assert (tmp_path / "results" / "table2-quick" / "bunny-200" / "row.json").is_file()
+    again = lineup("sweep", cli.EXPERIMENTS / "table2.yaml", "--variant=quick", "--engine=serial")
+    assert again[0] == 1
+    assert "bunny-200: kept" in again[1]
+    assert "cannon-200: kept" not in again[1]
+
+
+def test_the_experiment_has_the_two_sets_of_the_paper(tmp_path, fake):
+    experiment = sweep.read_experiment(cli.EXPERIMENTS / "table2.yaml")
+    found = sweep.tasks(experiment, tmp_path)
+    from lineup.tables import PAPER
+
+    assert [(t.settings["model"], 2 * t.settings["blocks"]) for t in found] == [
+        (name, row.length) for name, row in PAPER.items()
+    ]
+
+
+def test_a_sweep_of_another_task_is_a_plain_table(lineup, tmp_path, monkeypatch):
+    monkeypatch.setitem(sweep.TASKS, "fake", "fake_tasks:work")
+    monkeypatch.setenv("LINEUP_TEST_CALLS", str(tmp_path / "calls"))
+    (tmp_path / "e.yaml").write_text(
+        "{title: t, task: fake, grids: [{model: [a, b], blocks: [1, 2]}]}"
+    )
+    code, out, _ = lineup("sweep", "e.yaml", "--engine", "serial")
+    assert code == 0
+    assert "written: results/e.csv" in out
+    assert pd.read_csv("results/e.csv").length.tolist() == [2, 4, 2, 4]
+
+
+def test_an_interrupt_says_what_is_kept(lineup, tmp_path, monkeypatch):
+    monkeypatch.setitem(sweep.TASKS, "fake", "fake_tasks:work")
+    monkeypatch.setenv("LINEUP_TEST_CALLS", str(tmp_path / "calls"))
+    (tmp_path / "e.yaml").write_text(
+        "{title: t, task: fake, grids: [{model: [a, interrupt], blocks: 1}]}"
+    )
+    code, _, err = lineup("sweep", "e.yaml", "--engine", "serial")
+    assert code == 130
+    assert err == "lineup: interrupted; what was finished is kept\n"
+
+
+def test_verify_believes_no_file(lineup, tmp_path):
+    good, bad = tmp_path / "good.folding.json", tmp_path / "bad.folding.json"
+    lu.save(a_folding(), good)
+    lu.save(a_folding(np.array([[Move.SWING, 1, 2, 3]], np.int32)), bad)
+    code, out, err = lineup("verify", good)
+    assert (code, err) == (0, "")
+    assert "motion: certified (diameter 0.999, bends up to 90°, clearance" in out
+    code, out, err = lineup("verify", tmp_path)
+    assert code == 1
+    assert out.count("FAILS") == 1
+    assert err.startswith(f"falls short: {bad} motion: ")
+
+
+def test_verify_judges_a_path_against_the_solid_beside_it(lineup, tmp_path):
+    lu.save(a_folding().path, tmp_path / "c.path.json")
+    assert lineup("verify", "c.path.json")[0] == 0
+    lu.save(lu.VoxelSolid(np.ones((2, 3, 1), bool)), tmp_path / "c.solid.json")
+    code, _, err = lineup("verify", "c.path.json")
+    assert code == 1
+    assert "c.path.json path: " in err
+
+
+def test_verify_a_design(lineup, tmp_path):
+    solid = lu.VoxelSolid(np.array([[1, 0, 0], [1, 1, 1]], bool)[:, :, None], name="corner")
+    verdict = lu.certify(a_folding().motion)
+    table = pd.DataFrame({"model": ["corner"]})
+    lu.save(lu.Design((solid,), (a_folding(),), (verdict,), table), tmp_path)
+    code, out, _ = lineup("verify", tmp_path)
+    assert code == 0
+    assert out.count("ok ") == 3
+
+
+def test_voxelize_path_and_verify_on_a_mesh_file(lineup, tmp_path):
+    trimesh = pytest.importorskip("trimesh")
+    trimesh.creation.box((4, 3, 2)).export(tmp_path / "brick.stl")
+    code, out, err = lineup("voxelize", "brick.stl", "--voxels", 24)
+    assert (code, err) == (0, "")
+    assert "24 voxels in a grid of 4 x 3 x 2" in out
+    code, out, err = lineup("path", "brick.solid.json", "--out", "deep/er")
+    assert (code, err) == (0, "")
+    assert lu.load("deep/er/brick.path.json").coverage(lu.load("brick.solid.json")) > 0.9
+    assert lineup("verify", "deep")[0] == 0
+
+
+def test_models(lineup):
+    code, out, _ = lineup("models")
+    assert code == 0
+    assert "two_holed_torus" in out
+    assert "bunny" not in lineup("models", "duck")[1]
+
+
+BAD_USE = {
+    "unknown command": (["fold"], "No such command"),
+    "unknown option": (["table2", "--fast"], "No such option"),
+    "no number": (["run", "bunny", "--blocks", "many"], "not a valid int"),
+    "missing argument": (["verify"], "Missing argument"),
+    "missing mesh": (["voxelize", "gone.obj"], "no file gone.obj"),
+    "missing folder": (["verify", "gone"], "no file or folder gone"),
+    "nothing stored": (["verify", "nothing"], "no stored result"),
+    "missing experiment": (["sweep", "gone.yaml"], "no experiment file gone.yaml"),
+    "not an experiment": (["sweep", "text.txt"], "text.txt: "),
+    "unknown engine": (["sweep", "ok.yaml", "--engine", "threads"], "unknown engine 'threads'"),
+    "no workers": (["table2", "--workers", "0"], "workers must be at least 1, got 0"),
+    "unknown variant": (["sweep", "ok.yaml", "--variant", "x"], "unknown variant 'x'"),
+    "unwritable folder": (["table2", "--quick", "--out", "text.txt"], "text.txt"),
+    "empty mesh": (["voxelize", "empty.obj"], "empty.obj"),
+    "nan in a mesh": (["voxelize", "nan.obj"], "nan.obj"),
+    "zero voxels": (["voxelize", "text.obj", "--voxels", "0"], "voxels"),
+    "unknown model": (["voxelize", "teapotty"], "no file and no model 'teapotty'"),
+    "unknown model to run": (["run", "teapotty"], "no file and no model 'teapotty'"),
+    "unknown method": (["path", "cube.solid.json", "--method", "magic"], "'magic'"),
+    "malformed result": (["verify", "text.txt"], "text.txt: Invalid JSON"),
+    "another kind": (["unfold", "cube.solid.json"], "holds a VoxelSolid, and a path is needed"),
+    "negative blocks": (["run", "duck", "--blocks", "-3"], "blocks"),
+    "one name twice": (["run", "duck", "duck"], "two models would be stored under one name"),
+    "no direction": (["voxelize", "duck", "--up", "high"], "high"),
+    "negative diameter": (["verify", "c.folding.json", "--diameter", "-1"], "diameter"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("fault", BAD_USE)
+def test_bad_use_is_one_line_and_exit_code_2(lineup, fake, tmp_path, fault):
+    args, message = BAD_USE[fault]
+    if args[0] == "run":
+        pytest.importorskip("lineup.pipeline")
+    (tmp_path / "nothing").mkdir()
+    (tmp_path / "text.txt").write_text("hello")
+    (tmp_path / "text.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    (tmp_path / "empty.obj").write_text("")
+    (tmp_path / "nan.obj").write_text("v 0 0 nan\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n")
+    (tmp_path / "ok.yaml").write_text(
+        "{title: t, task: table2, fixed: {seed: 0}, grids: [{model: duck, blocks: 1}]}"
+    )
+    lu.save(lu.VoxelSolid(np.ones((2, 2, 2), bool)), tmp_path / "cube.solid.json")
+    lu.save(a_folding(), tmp_path / "c.folding.json")
+    code, _, err = lineup(*args)
+    assert code == 2
+    assert one_line(err)
+    assert message in err
+
+
+def test_the_installed_command_ends_without_a_traceback(tmp_path):
+    command = [Path(sys.executable).with_name("lineup"), "verify", "gone"]
+    run = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, env=os.environ)
+    assert run.returncode == 2
+    assert run.stderr == "lineup: error: no file or folder gone\n"
+
+
+def test_rows_on_disk_are_json(lineup, fake, tmp_path):
+    lineup("table2", "--quick")
+    row = json.loads((tmp_path / "results/table2-quick/cannon-200/row.json").read_text())
+    assert (row["format"], row["version"], row["reason"]) == ("lineup-row", 1, "no such mesh")
