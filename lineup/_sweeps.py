@@ -65,17 +65,11 @@ def carry_out(
         clearance = min(clearance, distance)
         if distance < diameter:
             return where, TOUCH, clearance, bend_deg, straight, bar_a, bar_b
-        second = joint if kind == _SWING else other
-        worst, joint_of_worst = _bends(pose, joint, second)
-        corners -= _corners(pose, joint, second)
-        _move(pose, local, kind, joint, other, e, d)
-        corners += _corners(pose, joint, second)
-        after, joint_after = _bends(pose, joint, second)
-        if after > worst:
-            worst, joint_of_worst = after, joint_after
+        worst, bent_joint, more = _carry(pose, local, kind, joint, other, e, d)
+        corners += more
         bend_deg = max(bend_deg, worst)
         if worst > max_bend_deg:
-            return where, BEND, clearance, bend_deg, straight, joint_of_worst, joint_of_worst
+            return where, BEND, clearance, bend_deg, straight, bent_joint, bent_joint
         straight = straight or corners == 0
     return len(moves), FINE, clearance, bend_deg, straight, -1, -1
 
@@ -157,6 +151,22 @@ def _to_frame(pose: Ints, origin: int, e: int, d: int, local: Ints) -> None:
         local[joint, 0] = sign_x * (pose[joint, axis_x] - x0)
         local[joint, 1] = sign_y * (pose[joint, axis_y] - y0)
         local[joint, 2] = pose[joint, axis_h] - h0
+
+
+@kernel
+def _carry(
+    pose: Ints, local: Ints, kind: int, joint: int, other: int, e: int, d: int
+) -> tuple[float, int, int]:
+    """Make the move: the largest bend during it, the joint that has it, and the corners gained."""
+    second = joint if kind == _SWING else other
+    before, joint_before = _bends(pose, joint, second)
+    corners = _corners(pose, joint, second)
+    _move(pose, local, kind, joint, other, e, d)
+    after, joint_after = _bends(pose, joint, second)
+    gained = _corners(pose, joint, second) - corners
+    if after > before:
+        return after, joint_after, gained
+    return before, joint_before, gained
 
 
 @kernel

@@ -10,17 +10,10 @@ from polycubes import STEPS, polycubes
 import lineup as lu
 from lineup import grid
 
-# A ring of two columns on a base: up the first, over the top and down the second.
-#   z = 2   a a a
-#   z = 1   b . c      side view, one voxel deep but for the base of two
-#   z = 0   d d d
-RING = np.ones((3, 1, 3), bool)
-RING[1, 0, 1] = False
-# Two pillars on a plate of 4 x 2; the path climbs each pillar and comes back.
+# Two pillars on a plate of 4 x 2 voxels; the path climbs each pillar and comes back.
 PILLARS = np.zeros((4, 2, 3), bool)
 PILLARS[:, :, 0] = True
 PILLARS[[0, 3], :, 1:] = True
-PILLARS_WORD = "UUNDD" + "E" + "SE" + "N" + "E" + "UUSDD"
 
 
 def walk(word, start=(0, 0, 0)):
@@ -42,7 +35,7 @@ def described(voxels, occupancy):
     return np.array(rows)
 
 
-NESTED = walk(PILLARS_WORD)
+NESTED = walk("UUNDDESENEUUSDD")
 VISITS = described(NESTED, PILLARS)
 
 
@@ -58,23 +51,20 @@ def changed(rows, k, column, value):
 
 
 def test_visits_of_the_pillars_by_hand():
-    """Plate, pillar up to its top and back, plate, other pillar and back, plate."""
-    ids = {"plate": 3, "left": 13, "right": 43, "left top": 23, "right top": 53}
-    assert len(NESTED) == 16
-    names = ["plate", "left", "left top", "left", "plate", "right", "right top", "right", "plate"]
-    assert [v[3] for v in VISITS.tolist()] == [0, 1, 2, 1, 0, 1, 2, 1, 0]
-    assert len({VISITS[names.index(n), 2] for n in ids}) == 5
-    assert [names.index(n) for n in names] == [
-        VISITS[:, 2].tolist().index(node) for node in VISITS[:, 2]
-    ]
+    """Plate, one pillar to its top and back, plate, the other and back, plate."""
+    names = ["plate", "left", "top", "left", "plate", "right", "other_top", "right", "plate"]
+    ids = VISITS[:, 2].tolist()
+    assert [names.index(name) for name in names] == [ids.index(node) for node in ids]
+    assert VISITS[:, 3].tolist() == [0, 1, 2, 1, 0, 1, 2, 1, 0]
+    assert VISITS[:, 0].tolist() == [0, 1, 2, 4, 5, 11, 12, 14, 15]
 
 
 GOOD = {
     "pillars": (pillars(), PILLARS),
     "pillars, not layered": (pillars(visits=np.empty((0, 4), int)), PILLARS),
-    "part of the ring": (
-        lu.VoxelPath(walk("EEUUW"), dropped=rest(RING, walk("EEUUW"))),
-        RING,
+    "end in a pillar": (
+        pillars(voxels=NESTED[:-2], visits=VISITS[:0], dropped=rest(PILLARS, NESTED[:-2])),
+        PILLARS,
     ),
     "refined": (
         lu.VoxelPath(
@@ -104,6 +94,16 @@ FAULTS = {
     "no refinement": ({"refinement": 0}, -1, "refinement 0 is not a positive number"),
     "nothing dropped": ({"voxels": NESTED[:-2]}, -1, "dropped is not the 2 voxels"),
     "dropped what it visits": ({"dropped": NESTED[:1]}, -1, "(it has 1 rows)"),
+    "dropped two others": (
+        {"voxels": NESTED[:-2], "dropped": NESTED[-4:-2]},
+        -1,
+        "dropped is not the 2 voxels that the path leaves out, in lexicographic order",
+    ),
+    "dropped out of order": (
+        {"voxels": NESTED[:-2], "dropped": rest(PILLARS, NESTED[:-2])[::-1]},
+        -1,
+        "dropped is not the 2 voxels",
+    ),
     "no visit": ({"visits": VISITS[:-1]}, 15, "no visit 8 of steps 15 to 16"),
     "one visit too many": (
         {"visits": np.vstack([VISITS, [(16, 16, 3, 0)]])},
