@@ -6,6 +6,7 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
 EXTRAS := notebooks,exact,test
+WANTED := --constraint constraints.txt --editable ".[$(EXTRAS)]"
 
 # Without a display the window must come from EGL, or VTK crashes at the first picture.
 ifeq ($(shell uname -s)$(DISPLAY),Linux)
@@ -42,10 +43,11 @@ help:  ## This list
 $(STAMP): pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] < (3, 14))' || { \
 	  echo "LineUp needs Python 3.11 to 3.13, and '$(PYTHON)' is not: name one with 'make PYTHON=python3.12'" >&2; exit 1; }
-	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt uv || echo "no uv, going on with pip"
-	{ test -x $(BIN)/uv && $(BIN)/uv pip install --quiet --python $(BIN)/python --constraint constraints.txt --editable ".[$(EXTRAS)]"; } \
-	  || $(BIN)/python -m pip install --quiet --constraint constraints.txt --editable ".[$(EXTRAS)]"
-	touch $@
+	@echo "setting up $(VENV), once and for some minutes"
+	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	@$(BIN)/python -m pip install --quiet --constraint constraints.txt uv || echo "no uv, going on with pip"
+	@{ test -x $(BIN)/uv && $(BIN)/uv pip install --quiet --python $(BIN)/python $(WANTED); } \
+	  || $(BIN)/python -m pip install --quiet $(WANTED)
+	@touch $@
 
 .PHONY: reproduce test lint lab notebooks setup clean help
