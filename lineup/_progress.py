@@ -52,5 +52,7 @@ class Reporter:
         if ended or not self._console.is_terminal:
             count = f"[{self._n_ended}/{self._total}]"
             self._console.print(f"{count} {name}: {stage}", markup=False, highlight=False)
-        running = "  ".join(f"{name}: {stage}" for name, stage in self._running.items())
+        shown = list(self._running.items())[:3]
+        more = [f"and {len(self._running) - 3} more"] if len(self._running) > 3 else []
+        running = ", ".join([*(f"{name}: {stage}" for name, stage in shown), *more])
         self._bars.update(self._all, completed=self._n_ended, description=running)

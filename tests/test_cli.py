@@ -1,5 +1,6 @@
 """The command line: what it says, what it writes, and how it ends."""
 
+import io
 import json
 import os
 import subprocess
@@ -10,9 +11,11 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from rich.console import Console
 
 import lineup as lu
 from lineup import cli, sweep
+from lineup._progress import Reporter
 from lineup.kinematics import Move
 
 CORNER = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 2, 0]], np.int32)
@@ -236,3 +239,19 @@ def test_rows_on_disk_are_json(lineup, fake, tmp_path):
     lineup("table2", "--quick")
     row = json.loads((tmp_path / "results/table2-quick/cannon-200/row.json").read_text())
     assert (row["format"], row["version"], row["reason"]) == ("lineup-row", 1, "no such mesh")
+
+
+@pytest.mark.parametrize("terminal", [False, True])
+def test_progress_lines(terminal):
+    console = Console(file=io.StringIO(), force_terminal=terminal, width=100)
+    with Reporter(7, console) as tell:
+        for name in "abcdefg":
+            tell(name, "fold")
+        tell("a", "done")
+        tell("b", "failed: [red] mesh")
+    said = console.file.getvalue()
+    assert "[1/7] a: done\n" in said
+    assert "[2/7] b: failed: [red] mesh\n" in said
+    assert ("[0/7] e: fold\n" in said) != terminal
+    assert ("c: fold, d: fold, e: fold" in said) == terminal
+    assert ("and 2 more" in said) == terminal

@@ -118,6 +118,19 @@ def test_every_public_name_is_explained_by_an_example(name):
         assert ">>>" in value.__doc__, name
 
 
+def test_the_readme_example_runs(capsys):
+    pytest.importorskip("lineup.pipeline")
+    (example,) = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.S)
+    exec(compile(example, "README.md", "exec"), {})
+    assert "moves: certified" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("page", [*ROOT.glob("*.md"), *ROOT.glob("[a-z]*/*.md")], ids=str)
+def test_links_between_pages_lead_somewhere(page):
+    links = re.findall(r"\]\((?!https?:)([^)#]+)", page.read_text())
+    assert not [link for link in links if not (page.parent / link).exists()]
+
+
 def code_cells(notebook: Path) -> list[dict]:
     cells = json.loads(notebook.read_text())["cells"]
     return [cell for cell in cells if cell["cell_type"] == "code"]
