@@ -125,7 +125,10 @@ def test_the_readme_example_runs(capsys):
     assert "moves: certified" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("page", [*ROOT.glob("*.md"), *ROOT.glob("[a-z]*/*.md")], ids=str)
+PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("[a-z]*/*.md")])
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda f: f.name)
 def test_links_between_pages_lead_somewhere(page):
     links = re.findall(r"\]\((?!https?:)([^)#]+)", page.read_text())
     assert not [link for link in links if not (page.parent / link).exists()]
