@@ -39,6 +39,9 @@ Workers = Annotated[
     int | None, typer.Option(help="Processes at a time; as many as there are cores if not given.")
 ]
 
+# Typer has a public name for the common base of its usage errors in late versions only.
+_UsageError: type[typer.BadParameter] = typer.BadParameter.__bases__[0]
+
 EXPERIMENTS = Path(__file__).parent.parent / "experiments"
 
 
@@ -51,7 +54,7 @@ def run(args: list[str]) -> int:
     """Run one command line and return its exit code; bad use is one line on stderr."""
     try:
         code: int | None = app(args, prog_name="lineup", standalone_mode=False)
-    except typer.TyperException as error:
+    except _UsageError as error:
         return _bad_use(error.format_message())
     except OSError as error:
         where = f": {error.filename}" if error.filename else ""
