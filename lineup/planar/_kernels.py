@@ -48,6 +48,18 @@ class Board(NamedTuple):
     n_set: NDArray[np.int32]
 
 
+class Schedule(NamedTuple):
+    """(First, last) values, geometric in between: heat and price of a cycle, and heat without."""
+
+    heat: tuple[float, float]
+    cycle_cost: tuple[float, float]
+    cold: tuple[float, float]
+
+
+NEVER = 1e12
+"""A price at which no cycle is made."""
+
+
 @kernel
 def step(width: int, direction: int) -> int:
     """Difference of flat cell numbers along one direction 0..3."""
@@ -58,6 +70,14 @@ def step(width: int, direction: int) -> int:
     if direction == 2:
         return -1
     return -width
+
+
+@kernel
+def direction_of(width: int, difference: int) -> int:
+    """Direction 0..3 of a step, the inverse of `step`."""
+    if abs(difference) == 1:
+        return 0 if difference == 1 else 2
+    return 1 if difference == width else 3
 
 
 @kernel
@@ -302,14 +322,81 @@ def score_of(board: Board) -> float:
 
 
 @kernel
+def unrolled(links: NDArray[np.uint8], width: int, start: int) -> NDArray[np.int32]:
+    """The cells of the path that begins at `start`, in order."""
+    path = np.empty(links.size, np.int32)
+    path[0] = start
+    n, cell, ahead = 1, start, int(links[start])
+    while ahead:
+        direction = OneLink[ahead]
+        cell += step(width, direction)
+        path[n] = cell
+        n += 1
+        ahead = int(links[cell]) & ~(1 << ((direction + 2) & 3))
+    return path[:n].copy()
+
+
+@kernel
+def drop_cycles(board: Board, start: int) -> None:
+    """Leave the path that begins at `start` and nothing else."""
+    path = unrolled(board.links, board.width, start)
+    directions = np.empty(path.size - 1, np.int64)
+    for k in range(path.size - 1):
+        directions[k] = direction_of(board.width, path[k + 1] - path[k])
+    clear(board)
+    for k in range(path.size - 1):
+        flip_link(board, path[k], directions[k])
+
+
+@kernel
+def anneal_twice(
+    board: Board,
+    squares: NDArray[np.int32],
+    n_proposals: int,
+    schedule: Schedule,
+    ends: tuple[int, int],
+    limit: float,
+    best: NDArray[np.uint8],
+    rng: np.random.Generator,
+) -> float:
+    """Anneal with cycles, drop those that found no way to join, and fill up without cycles."""
+    trial = np.empty_like(best)
+    score = anneal(
+        board,
+        squares,
+        n_proposals,
+        schedule.heat,
+        schedule.cycle_cost,
+        score_of(board),
+        limit,
+        best,
+        rng,
+    )
+    drop_cycles(board, ends[0])
+    second = anneal(
+        board,
+        squares,
+        n_proposals // 4,
+        schedule.cold,
+        (NEVER, NEVER),
+        score_of(board),
+        limit,
+        trial,
+        rng,
+    )
+    if second > score:
+        best[:] = trial
+    return max(score, second)
+
+
+@kernel
 def search(
     board: Board,
     squares: NDArray[np.int32],
     ways: NDArray[np.int32],
     ends: tuple[int, int],
     effort: tuple[int, int],
-    heat: tuple[float, float],
-    cycle_cost: tuple[float, float],
+    schedule: Schedule,
     limit: float,
     rng: np.random.Generator,
 ) -> tuple[float, NDArray[np.uint8]]:
@@ -329,27 +416,10 @@ def search(
             clear(board)
             if not lay(board, start, end, -1, rng):
                 break
-        score = anneal(
-            board, squares, effort[1], heat, cycle_cost, score_of(board), limit, trial, rng
-        )
+        score = anneal_twice(board, squares, effort[1], schedule, ends, limit, trial, rng)
         if score > best_score:
             best_score = score
             best[:] = trial
         if best_score >= limit:
             break
     return best_score, best
-
-
-@kernel
-def unrolled(links: NDArray[np.uint8], width: int, start: int) -> NDArray[np.int32]:
-    """The cells of the path that begins at `start`, in order."""
-    path = np.empty(links.size, np.int32)
-    path[0] = start
-    n, cell, ahead = 1, start, int(links[start])
-    while ahead:
-        direction = OneLink[ahead]
-        cell += step(width, direction)
-        path[n] = cell
-        n += 1
-        ahead = int(links[cell]) & ~(1 << ((direction + 2) & 3))
-    return path[:n].copy()

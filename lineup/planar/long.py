@@ -1,7 +1,7 @@
 """A long path between two cells of a planar region, by annealing (Section 4.1's problem).
 
 The paper's Algorithm 2 assumes a connected interior and gives up dangling cells; this search
-assumes nothing and covers more. It is a heuristic: `path_limit` says what cannot be exceeded.
+assumes nothing and covers more. It is a heuristic: `chain_limit` says what cannot be exceeded.
 """
 
 from __future__ import annotations
@@ -9,71 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..grid import BoolArray, FloatArray, IntArray
-from ._kernels import Board, search, unrolled
+from ..grid import FloatArray, IntArray
+from ._kernels import Board, Schedule, search, unrolled
+from .blocks import Region, chain, chain_limit, reach
 
-HEAT = (0.5, 0.1)
-CYCLE_COST = (0.5, 4.0)
-
-
-@dataclass(frozen=True, eq=False)
-class Region:
-    """A 4-connected set of cells of a layer, on a flat grid with an empty margin.
-
-    Cell (x, y) of the layer has the number ``(x + 1) * width + y + 1``, so that all layers of a
-    solid share one numbering.
-
-    Attributes
-    ----------
-    width : int
-    inside : (N,) bool
-    weight : (N,) float64
-        What covering a cell is worth.
-    cells : (n,) int32
-        The cells inside, ascending.
-    squares : (Q,) int32
-        First cells of the 2 x 2 blocks inside.
-    worth : pair of arrays
-        For each colour, ``worth[colour][k]`` is the weight of its k heaviest cells.
-    """
-
-    width: int
-    inside: BoolArray
-    weight: FloatArray
-    cells: IntArray
-    squares: IntArray
-    worth: tuple[FloatArray, FloatArray]
-
-    def colour(self, cell: int) -> int:
-        """Checkerboard colour 0 or 1 of a cell (Figure 10)."""
-        return (cell // self.width + cell % self.width) % 2
-
-
-def region(inside: BoolArray, weight: FloatArray, width: int) -> Region:
-    """The region of the cells set in `inside`, (N,) on a flat grid with a margin."""
-    cells = np.flatnonzero(inside).astype(np.int32)
-    block = inside[cells + 1] & inside[cells + width] & inside[cells + width + 1]
-    parity = (cells // width + cells % width) % 2
-    heaviest = [np.sort(weight[cells[parity == c]])[::-1] for c in (0, 1)]
-    first, second = (np.concatenate([[0.0], np.cumsum(w)]) for w in heaviest)
-    return Region(width, inside, weight, cells, cells[block], (first, second))
-
-
-def path_limit(region: Region, start_colour: int, end_colour: int) -> tuple[int, float]:
-    """Cells and weight that no path between ends of these colours exceeds.
-
-    Colours alternate along a path, so the rarer one limits it.
-    """
-    n = [len(worth) - 1 for worth in region.worth]
-    if start_colour != end_colour:
-        k = [min(n)] * 2
-    else:
-        k = [min(n[0], n[1])] * 2
-        k[1 - start_colour] = min(n[1 - start_colour], n[start_colour] - 1)
-        k[start_colour] = k[1 - start_colour] + 1
-    return sum(k), float(sum(worth[m] for worth, m in zip(region.worth, k, strict=True)))
+SCHEDULE = Schedule(heat=(0.5, 0.1), cycle_cost=(0.5, 4.0), cold=(0.2, 0.1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,71 +23,95 @@ class Wishes:
 
     Attributes
     ----------
-    group_of : (2, 2, N) int32
-        Group of the link from a cell in direction 0 (next cell) or 1 (one width on), -1 for none;
-        the first axis allows two groups a link.
+    links : list of (m, 2) int32
+        For each group its links (cell, axis), from a cell to the next one (axis 0) or one width
+        on (axis 1).
+    slot : list of int
+        0 or 1 for each group; groups of one slot have no link in common.
     bonus : (G,) float64
-    ways : (W,) int32
-        Cells of the groups, ascending.
     """
 
-    group_of: IntArray
+    links: list[IntArray]
+    slot: list[int]
     bonus: FloatArray
-    ways: IntArray
 
 
-def wishes(
-    groups: list[tuple[int, NDArray[np.bool_]]], bonus: list[float], width: int, n_cells: int
-) -> Wishes:
-    """Wishes for any link within each set of cells: groups are (slot 0 or 1, (N,) bool)."""
-    group_of = np.full((2, 2, n_cells), -1, np.int32)
-    ways = np.zeros(n_cells, bool)
-    for number, (slot, inside) in enumerate(groups):
-        for axis, stride in enumerate((1, width)):
-            linked = np.flatnonzero(inside[:-stride] & inside[stride:])
-            group_of[slot, axis, linked] = number
-            ways[linked] = ways[linked + stride] = True
-    return Wishes(group_of, np.array(bonus, float), np.flatnonzero(ways).astype(np.int32))
+NO_WISHES = Wishes([], [], np.zeros(0))
 
 
 def long_path(
     region: Region,
     start: int,
     end: int,
-    wanted: Wishes,
+    wishes: Wishes,
     restarts: int,
     sweeps: int,
     rng: np.random.Generator,
-) -> tuple[IntArray, float]:
-    """A long path from `start` to `end` and its score: covered weight and bonuses earned.
+) -> tuple[IntArray, float, float]:
+    """A long path from `start` to `end`, its score, and a score that no path exceeds.
 
     Parameters
     ----------
     restarts, sweeps : int
         Annealed starts, and proposals for each 2 x 2 block in each of them.
+
+    Returns
+    -------
+    path : (P,) int32
+        Cells, from `start` to `end`.
+    score, limit : float
+        Covered weight and the bonuses earned.
     """
     if start == end:
-        return np.array([start], np.int32), float(region.weight[start])
+        weight = float(region.weight[start])
+        return np.array([start], np.int32), weight, weight
+    blocks = chain(region, start, end)
+    inside = reach(region, blocks)
+    square = region.squares
+    width = region.width
+    squares = square[inside[square] & inside[square + 1] & inside[square + width]]
+    group_of, in_reach, ways = _groups(wishes, inside, width)
+    limit = chain_limit(region, blocks, start)[1] + float(wishes.bonus[in_reach].sum())
     board = Board(
-        region.width,
-        region.inside,
+        width,
+        inside,
         region.weight,
-        wanted.group_of,
-        wanted.bonus,
-        np.zeros(region.inside.size, np.uint8),
-        np.zeros(wanted.bonus.size, np.int32),
+        group_of,
+        wishes.bonus,
+        np.zeros(inside.size, np.uint8),
+        np.zeros(wishes.bonus.size, np.int32),
     )
-    _, limit = path_limit(region, region.colour(start), region.colour(end))
-    n_repeats = 1 + len(region.cells) // max(1, len(wanted.ways))
     score, links = search(
         board,
-        region.squares,
-        np.concatenate([region.cells, np.tile(wanted.ways, n_repeats)]),
+        squares,
+        ways,
         (start, end),
-        (restarts, sweeps * len(region.squares)),
-        HEAT,
-        CYCLE_COST,
-        limit + float(wanted.bonus.sum()) - 1e-9,
+        (restarts, sweeps * len(squares)),
+        SCHEDULE,
+        limit - 1e-9,
         rng,
     )
-    return unrolled(links, region.width, start), score
+    return unrolled(links, width, start), score, limit
+
+
+def _groups(
+    wishes: Wishes, inside: np.ndarray[tuple[int], np.dtype[np.bool_]], width: int
+) -> tuple[IntArray, list[int], IntArray]:
+    """Group of each link in reach, the groups in reach, and cells to go through at restarts.
+
+    Half of those cells are any, half belong to a wanted link.
+    """
+    group_of = np.full((2, 2, inside.size), -1, np.int32)
+    in_reach, wanted = [], []
+    for number, (links, slot) in enumerate(zip(wishes.links, wishes.slot, strict=True)):
+        cell, axis = links.T
+        kept = inside[cell] & inside[cell + np.where(axis == 0, 1, width)]
+        if kept.any():
+            in_reach.append(number)
+            group_of[slot, axis[kept], cell[kept]] = number
+            wanted.append(cell[kept])
+    cells = np.flatnonzero(inside).astype(np.int32)
+    if wanted:
+        ways = np.unique(np.concatenate(wanted))
+        cells = np.concatenate([cells, np.resize(ways, len(cells))])
+    return group_of, in_reach, cells
