@@ -28,7 +28,7 @@ lab: $(STAMP)  ## JupyterLab on the first notebook
 	$(BIN)/jupyter lab notebooks/00_overview.ipynb
 
 notebooks: $(STAMP)  ## Execute every notebook again from its .py half
-	$(BIN)/jupytext --set-formats ipynb,py:percent --execute notebooks/*.py
+	$(BIN)/jupytext --quiet --to ipynb --set-formats ipynb,py:percent --set-kernel python3 --execute notebooks/*.py
 
 setup: $(STAMP)  ## The virtual environment alone
 
