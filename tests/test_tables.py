@@ -94,6 +94,12 @@ def test_a_model_the_paper_does_not_have():
     assert row["failure"] == ""
 
 
+def test_the_table_of_a_design_needs_no_sweep():
+    row = {name: GOOD[name] for name in GOOD if name not in ("failure", "blocks", "seed")}
+    assert table(row)["failure"].tolist() == [""]
+    assert table(row | {"certified": False})["failure"].tolist() == ["not certified: straight"]
+
+
 def test_files(tmp_path):
     rows = table(GOOD, CRASHED)
     csv, md, tex = write_table(rows, tmp_path)
