@@ -217,16 +217,16 @@ def _label(values: tuple[Scalar, ...]) -> str:
 
 def _inputs(settings: dict[str, Scalar]) -> list[bytes]:
     """What settings name: the contents of files, and where a model of the catalogue comes from."""
-    catalogue = catalog.models().set_index("name")["source"]
+    models = catalog.models()
+    sources = dict(zip(models["name"], models["source"], strict=True))
     meshes = os.environ.get(catalog.FOLDER_VARIABLE)
     found: list[bytes] = []
     for value in settings.values():
         if isinstance(value, str) and Path(value).is_file():
             found.append(Path(value).read_bytes())
-        elif value in catalogue:
-            source = str(catalogue[value])
-            found.append(source.encode())
-            if meshes and source == "folder":
+        elif value in sources:
+            found.append(sources[value].encode())
+            if meshes and sources[value] == "folder":
                 found.append((Path(meshes) / f"{value}.ply").read_bytes())
     return found
 
