@@ -28,7 +28,7 @@ def layered_path(
     seed : int
         The same solid, seed and options give the same path.
     options
-        Keyword options of the method. Those of ``"layered"``: `starts` (8), spanning trees and
+        Keyword options of the method. Those of ``"layered"``: `starts` (4), spanning trees and
         MSPs tried; `sweeps` (100), length of each planar search, see `planar.long_path`;
         `both_ends_on_top` (False), put both ends in one node, as high up as can be.
 
@@ -65,7 +65,7 @@ def layered_paths(
     solid: VoxelSolid,
     seed: int = 0,
     *,
-    starts: int = 8,
+    starts: int = 4,
     sweeps: int = 100,
     both_ends_on_top: bool = False,
 ) -> list[VoxelPath]:
@@ -80,9 +80,9 @@ def layered_paths(
     >>> [len(p) for p in layered_paths(lu.VoxelSolid(np.ones((4, 3, 2), bool)), starts=2)]
     [24, 24]
     """
-    for name, value in (("starts", starts), ("sweeps", sweeps)):
-        if value < 1:
-            raise ValueError(f"{name} must be at least 1, got {value}")
+    for name, value, least in (("seed", seed, 0), ("starts", starts, 1), ("sweeps", sweeps, 1)):
+        if value < least:
+            raise ValueError(f"{name} must be at least {least}, got {value}")
     if solid.size < 2:
         raise ValueError("a path needs at least two voxels, the solid has 1")
     shape = layers(solid)
@@ -99,7 +99,7 @@ def _layered(
     solid: VoxelSolid,
     seed: int,
     *,
-    starts: int = 8,
+    starts: int = 4,
     sweeps: int = 100,
     both_ends_on_top: bool = False,
 ) -> VoxelPath:

@@ -2,6 +2,7 @@
 
 import itertools
 
+import networkx as nx
 import numpy as np
 from scipy import optimize
 
@@ -124,3 +125,67 @@ def alternates(names):
 def enclosing(names, k):
     """How many names other than ``names[k]`` stand both before and after place k."""
     return len((set(names[:k]) & set(names[k + 1 :])) - {names[k]})
+
+
+def euler_by_cells(occupancy: np.ndarray) -> int:
+    """Euler number of the solid whose voxels join through faces, cell by cell.
+
+    Voxels are the corners of a complex that has an edge, a square or a cube wherever all its
+    corners are taken.
+    """
+    taken = {tuple(v) for v in np.argwhere(occupancy).tolist()}
+    number = 0
+    for x, y, z in taken:
+        for a, b, c in np.ndindex(2, 2, 2):
+            block = {
+                (x + i, y + j, z + k)
+                for i in range(a + 1)
+                for j in range(b + 1)
+                for k in range(c + 1)
+            }
+            number += (-1) ** (a + b + c) * (block <= taken)
+    return number
+
+
+def voxel_graph(occupancy, in_layer=False):
+    """networkx graph of the voxels of a grid, joined where they share a face (of one layer)."""
+    graph = nx.Graph()
+    graph.add_nodes_from(map(tuple, np.argwhere(occupancy).tolist()))
+    for x, y, z in list(graph):
+        others = [(x + 1, y, z), (x, y + 1, z)] + ([] if in_layer else [(x, y, z + 1)])
+        graph.add_edges_from(((x, y, z), other) for other in others if other in graph)
+    return graph
+
+
+def simple_paths_from(graph, start):
+    """Every simple path of a graph that begins at `start`, as tuples of nodes."""
+    stack = [(start,)]
+    while stack:
+        path = stack.pop()
+        yield path
+        stack.extend((*path, near) for near in graph[path[-1]] if near not in path)
+
+
+def longest_path(graph):
+    """Number of nodes of the longest simple path, by trying them all."""
+    return max(len(path) for start in graph for path in simple_paths_from(graph, start))
+
+
+def heaviest_path_between(graph, start, end, weight):
+    """Greatest sum of node weights of a simple path between two nodes, by trying them all."""
+    ending = (path for path in simple_paths_from(graph, start) if path[-1] == end)
+    return max(sum(weight[node] for node in path) for path in ending)
+
+
+def two_matching(graph, colour):
+    """Edges of the largest simple 2-matching of a bipartite graph, by networkx flow."""
+    network = nx.DiGraph()
+    for node in graph:
+        if colour(node) == 0:
+            network.add_edge("source", node, capacity=2)
+            network.add_edges_from(((node, near) for near in graph[node]), capacity=1)
+        else:
+            network.add_edge(node, "sink", capacity=2)
+    if not {"source", "sink"} <= set(network):
+        return 0
+    return nx.maximum_flow_value(network, "source", "sink")

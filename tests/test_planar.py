@@ -1,0 +1,177 @@
+"""The planar search against exhaustive search, its parts against networkx."""
+
+import itertools
+
+import networkx as nx
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from oracles import heaviest_path_between
+
+from lineup import planar
+from lineup.planar import _kernels as kernels
+
+
+@st.composite
+def regions(draw, max_cells=14):
+    """A random region with weights 1 and 2, and its graph of cells."""
+    cells, rim = set(), {(0, 0)}
+    for _ in range(draw(st.integers(2, max_cells))):
+        x, y = draw(st.sampled_from(sorted(rim)))
+        cells.add((x, y))
+        rim |= {(x + 1, y), (x - 1, y), (x, y + 1), (x, y - 1)}
+        rim -= cells
+    points = np.array(sorted(cells))
+    points += 1 - points.min(axis=0)
+    inside = np.zeros(points.max(axis=0) + 2, bool)
+    inside[tuple(points.T)] = True
+    heavy = draw(st.lists(st.booleans(), min_size=inside.size, max_size=inside.size))
+    weight = 1.0 + np.array(heavy, float)
+    return planar.region(inside.ravel(), weight, inside.shape[1])
+
+
+def graph_of(region):
+    graph = nx.Graph()
+    for cell in region.cells.tolist():
+        graph.add_node(cell)
+        for other in (cell + 1, cell + region.width):
+            if region.inside[other]:
+                graph.add_edge(cell, other)
+    return graph
+
+
+def ends_of(data, region):
+    cell = st.sampled_from(region.cells.tolist())
+    return data.draw(cell), data.draw(cell)
+
+
+def check_path(region, path, start, end):
+    assert (path[0], path[-1]) == (start, end)
+    assert len(set(path.tolist())) == len(path)
+    assert region.inside[path].all()
+    assert set(np.abs(np.diff(path)).tolist()) <= {1, region.width}
+
+
+@settings(max_examples=150, deadline=None)
+@given(regions(), st.data())
+def test_small_regions_are_solved_to_the_optimum(region, data):
+    start, end = ends_of(data, region)
+    rng = np.random.default_rng(0)
+    path, score, limit = planar.long_path(region, start, end, planar.NO_WISHES, 8, 100, rng)
+    check_path(region, path, start, end)
+    assert score == region.weight[path].sum()
+    best = heaviest_path_between(graph_of(region), start, end, region.weight)
+    assert score == best <= limit
+
+
+@settings(max_examples=60, deadline=None)
+@given(regions(40), st.data())
+def test_blocks_are_those_of_networkx(region, data):
+    graph = graph_of(region)
+    found = sorted(map(sorted, nx.biconnected_components(graph)))
+    mine = []
+    for block, head in enumerate(region.head.tolist()):
+        mine.append(sorted([head, *np.flatnonzero(region.home == block).tolist()]))
+    assert sorted(mine) == found
+    start, end = ends_of(data, region)
+    chain = planar.chain(region, start, end)
+    if start == end:
+        assert chain == []
+        return
+    # With its ends joined, exactly the blocks between them grow together.
+    graph.add_edge(start, end)
+    ring = next(b for b in nx.biconnected_components(graph) if {start, end} <= b)
+    assert {cell for block, _, _ in chain for cell in mine[block]} == ring
+    assert (chain[0][1], chain[-1][2]) == (start, end)
+    assert all(a[2] == b[1] for a, b in itertools.pairwise(chain))
+
+
+@settings(max_examples=60, deadline=None)
+@given(regions(30), st.integers(0, 9))
+def test_toggles_keep_one_path_and_cycles(region, seed):
+    """The change in cycles and weight that each toggle reports, against a recount."""
+    rng = np.random.default_rng(seed)
+    board = kernels.Board(
+        region.width,
+        region.inside,
+        region.weight,
+        np.full((2, 2, region.inside.size), -1, np.int32),
+        np.zeros(0),
+        np.zeros(region.inside.size, np.uint8),
+        np.zeros(0, np.int32),
+    )
+    start, end = region.cells[[0, -1]].tolist()
+    assert kernels.lay(board, start, end, -1, rng)
+    score, n_cycles = kernels.score_of(board), 0
+    for _ in range(60 if len(region.squares) else 0):
+        square = int(rng.choice(region.squares))
+        change, cycles = kernels.propose(board, square, 2.0, 0.5, rng)
+        score += change
+        n_cycles += cycles
+        links = linked_graph(board, region)
+        assert n_cycles == nx.number_connected_components(links) - 1
+        assert score == sum(region.weight[cell] for cell in links)
+        assert {cell: 1 if cell in (start, end) else 2 for cell in links} == dict(links.degree)
+    kernels.drop_cycles(board, start)
+    links = linked_graph(board, region)
+    assert nx.has_path(links, start, end)
+    assert nx.is_connected(links)
+
+
+def linked_graph(board, region):
+    links = nx.Graph()
+    for cell in region.cells.tolist():
+        for direction, other in enumerate((cell + 1, cell + region.width)):
+            if board.links[cell] >> direction & 1:
+                assert board.links[other] >> (direction + 2) & 1
+                links.add_edge(cell, other)
+    return links
+
+
+def test_a_wish_is_worth_a_detour():
+    """A plate of 3 x 3 with a wish for the far side, which the heaviest path leaves out."""
+    inside = np.pad(np.ones((3, 3), bool), 1)
+    region = planar.region(inside.ravel(), np.ones(25), 5)
+    start, end = 6, 7
+    rng = np.random.default_rng(0)
+    for cell, axis in ((12, 0), (12, 1), (11, 1), (17, 0)):
+        wishes = planar.Wishes([np.array([(cell, axis)], np.int32)], [1], np.array([50.0]))
+        path, score, _ = planar.long_path(region, start, end, wishes, 8, 100, rng)
+        check_path(region, path, start, end)
+        other = cell + (1, 5)[axis]
+        steps = {frozenset(step) for step in zip(path.tolist(), path[1:].tolist(), strict=False)}
+        assert frozenset((cell, other)) in steps
+        assert score == len(path) + 50.0
+
+
+def test_both_ways_round_a_hole_are_found():
+    """On a ring the long way round is the better one, and no square leads there."""
+    inside = np.pad(np.ones((5, 5), bool), 1)
+    inside[2:5, 2:5] = False
+    region = planar.region(inside.ravel(), np.ones(49), 7)
+    path, _, limit = planar.long_path(
+        region, 8, 10, planar.NO_WISHES, 8, 100, np.random.default_rng(0)
+    )
+    assert len(path) == 15
+    assert limit >= 15
+
+
+def test_one_cell():
+    inside = np.pad(np.ones((1, 1), bool), 1)
+    region = planar.region(inside.ravel(), np.full(9, 2.0), 3)
+    path, score, limit = planar.long_path(
+        region, 4, 4, planar.NO_WISHES, 1, 1, np.random.default_rng(0)
+    )
+    assert (path.tolist(), score, limit) == ([4], 2.0, 2.0)
+
+
+@pytest.mark.parametrize("n", [4, 9, 16])
+def test_even_squares_are_filled(n):
+    inside = np.pad(np.ones((n, n + n % 2), bool), 1)
+    region = planar.region(inside.ravel(), np.ones(inside.size), inside.shape[1])
+    start = inside.shape[1] + 1
+    path, _, limit = planar.long_path(
+        region, start, start + 1, planar.NO_WISHES, 4, 100, np.random.default_rng(0)
+    )
+    assert len(path) == limit == inside.sum()
