@@ -28,8 +28,9 @@ def ellipsoid(p: FloatArray, centre: Point, radii: Point) -> FloatArray:
 def box(p: FloatArray, centre: Point, half: Point) -> FloatArray:
     """A box along the axes, given by its half edge lengths."""
     q = np.abs(p - centre) - np.array(half)
-    inside: FloatArray = np.minimum(q.max(axis=-1), 0)
-    return _length(np.maximum(q, 0)) + inside
+    deepest: FloatArray = np.maximum(np.maximum(q[..., 0], q[..., 1]), q[..., 2])
+    distance: FloatArray = _length(np.maximum(q, 0)) + np.minimum(deepest, 0)
+    return distance
 
 
 def torus(p: FloatArray, centre: Point, axis: int, ring: float, tube: float) -> FloatArray:
@@ -104,5 +105,5 @@ def mirrored(p: FloatArray) -> FloatArray:
 
 
 def _length(vectors: FloatArray) -> FloatArray:
-    length: FloatArray = np.sqrt((vectors * vectors).sum(axis=-1))
+    length: FloatArray = np.sqrt(np.einsum("...i,...i->...", vectors, vectors))
     return length

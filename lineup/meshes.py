@@ -146,20 +146,19 @@ def _checked(
             f"but it has only 0..{len(vertices) - 1}"
         )
     vertices = vertices.astype(np.float64)
-    corners = vertices[np.unique(faces)]
-    if (np.ptp(corners, axis=0) == 0).any():
+    used, faces = np.unique(faces, return_inverse=True)
+    vertices, faces = vertices[used], faces.reshape(-1, 3).astype(np.int64)
+    if not np.ptp(vertices, axis=0).all():
         raise ValueError(f"{name} is flat: it spans no volume")
-    return vertices, faces.astype(np.int64)
+    return vertices, faces
 
 
 def _oriented(
     vertices: FloatArray, faces: FaceArray, digest: str, provenance: dict[str, Any]
 ) -> Surface:
     """Weld equal vertices and turn badly oriented faces outwards, counting them."""
-    mesh = trimesh.Trimesh(vertices, faces, process=False)
-    mesh.merge_vertices(merge_tex=True, merge_norm=True)
-    mesh.update_faces(mesh.nondegenerate_faces(height=0.0))
-    welded, given = np.array(mesh.vertices), np.array(mesh.faces)
+    welded, given = _welded(vertices, faces)
+    mesh = trimesh.Trimesh(welded, given, process=False)
     part = _parts(given)
     consistent = given
     if not mesh.is_winding_consistent:
@@ -178,6 +177,16 @@ def _oriented(
         closed=_boundary_free(outwards),
         euler=int(mesh.euler_number) // 2 if mesh.is_watertight and part.max() == 0 else None,
     )
+
+
+def _welded(vertices: FloatArray, faces: FaceArray) -> tuple[FloatArray, FaceArray]:
+    """One vertex for all that agree to 1e-8 of the extent, and no face that this collapses."""
+    low, extent = vertices.min(axis=0), np.ptp(vertices, axis=0).max()
+    rounded = np.round((vertices - low) / extent * 1e8)
+    _, first, index = np.unique(rounded, axis=0, return_index=True, return_inverse=True)
+    faces = index.reshape(-1)[faces]
+    distinct = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
+    return vertices[first], np.ascontiguousarray(faces[distinct])
 
 
 def _turned_outwards(vertices: FloatArray, faces: FaceArray, part: NDArray[Any]) -> FaceArray:

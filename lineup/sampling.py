@@ -10,85 +10,94 @@ from scipy import ndimage
 from . import grid
 from ._jit import kernel
 from ._record import record
-from .grid import BoolArray, FloatArray, IntArray
+from .grid import BoolArray, FloatArray
 from .meshes import FaceArray, Surface
 
-_PILOT_CELLS = 48
+_PILOTS = (48, 96, 192)
+_SEEN = 500
+"""Cells that must lie inside for a volume to be believed, and estimated from them."""
+_MOST_CELLS = 100_000_000
 _BATCH = 500_000
 _BLOCK = 4
+_MARGIN = 2
+_COLUMNS = 4
 
 
 @record
 class Sampling:
-    """Which cells of a fine lattice have their centre inside a surface.
+    """How much of each cell of a fine lattice is inside a surface.
 
     Attributes
     ----------
     origin : (3,) float64
         The lattice's lowest corner.
-    cell : float
-        Edge length of a cell.
-    table : (X + 1, Y + 1, Z + 1) int32
-        ``table[i, j, k]`` is the number of inside cells below (i, j, k).
+    cell : (3,) float64
+        Edge lengths of a cell, equal or nearly so.
+    table : (X + 1, Y + 1, Z + 1) float64
+        ``table[i, j, k]`` is the volume inside below (i, j, k), in cells. Enclosed voids count as
+        inside.
     euler : int
         Euler number of the solid: of the surface where that knows it, else of the inside cells.
     n_void : int
-        Cells of enclosed voids; they count as inside in `table`.
+        Cells of enclosed voids.
     """
 
     origin: FloatArray
-    cell: float
-    table: IntArray
+    cell: FloatArray
+    table: FloatArray
     euler: int
     n_void: int
 
     @property
     def volume(self) -> float:
         """Volume of the inside cells."""
-        return float(self.table[-1, -1, -1]) * self.cell**3
+        return float(self.table[-1, -1, -1] * self.cell.prod())
 
     def coverage(self, lines: Sequence[FloatArray], pitch: float) -> FloatArray:
         """Share of each voxel between consecutive grid lines that is inside, (X, Y, Z) in 0..1.
 
         The lines of each axis are `pitch` apart; the lattice is empty beyond its ends.
         """
-        at = [(line - self.origin[a]) / self.cell for a, line in enumerate(lines)]
+        at = [(line - self.origin[a]) / self.cell[a] for a, line in enumerate(lines)]
         below = _interpolated(self.table, at[0], at[1], at[2])
         inside = np.diff(np.diff(np.diff(below, axis=0), axis=1), axis=2)
-        shares: FloatArray = inside * (self.cell / pitch) ** 3
+        shares: FloatArray = inside * (self.cell / pitch).prod()
         return shares
 
 
 @lru_cache(maxsize=4)
 def sampled(surface: Surface, n_cells: int) -> Sampling:
-    """`surface` sampled so finely that about `n_cells` cells lie inside.
+    """`surface` sampled so finely that about `n_cells` cells, or more, lie inside.
 
     Raises
     ------
     ValueError
-        If the surface encloses no volume that a lattice of 200 cells across can see.
+        If the surface encloses too little volume for a lattice of 192^3 cells to see.
     """
-    extent = float(np.ptp(surface.vertices, axis=0).max())
-    for across in (_PILOT_CELLS, 2 * _PILOT_CELLS, 4 * _PILOT_CELLS):
-        inside, _ = _inside_cells(surface, extent / across)
-        n = int(inside.sum())
-        # Too few hits make a poor estimate of the volume; plates are the usual case.
-        if n >= 2 * across:
+    box = float(np.prod(np.ptp(surface.vertices, axis=0)))
+    for across in _PILOTS:
+        pilot = (box / across**3) ** (1 / 3)
+        seen = float(_filled_cells(surface, pilot)[0].sum())
+        if seen >= _SEEN:
             break
-    if n == 0:
-        raise ValueError("the mesh encloses no volume: its faces may be open sheets or folded flat")
-    cell = extent / across * (n / n_cells) ** (1 / 3)
-    inside, origin = _inside_cells(surface, cell)
-    outside, _ = grid.components(~inside)
-    solid = outside != outside[0, 0, 0]  # the lattice has an empty margin
-    table = np.zeros(tuple(s + 1 for s in solid.shape), np.int32)
-    table[1:, 1:, 1:] = solid
+    if seen < _SEEN:
+        raise ValueError(
+            f"the mesh encloses too little volume, {seen / across**3:.1g} of its bounding box: "
+            "it may be made of open or flat sheets; a closed surface around a volume would do"
+        )
+    # A lattice coarser than the one that first saw a thin plate might miss it.
+    cell = min(pilot, max(pilot * (seen / n_cells) ** (1 / 3), (box / _MOST_CELLS) ** (1 / 3)))
+    fill, origin, edges = _filled_cells(surface, cell)
+    void = _voids(fill)
+    fill[void] = 1.0
+    table = np.zeros(tuple(s + 1 for s in fill.shape))
+    table[1:, 1:, 1:] = fill
     for axis in range(3):
         np.cumsum(table, axis=axis, out=table)
     euler = surface.euler
     if euler is None:
-        euler = euler_number(largest_component(solid)[0])
-    return Sampling(origin, cell, table, euler, int(solid.sum() - inside.sum()))
+        euler = euler_number(largest_component(fill > 0.5)[0])
+    return Sampling(origin, edges, table, euler, int(void.sum()))
 
 
 def largest_component(occupancy: BoolArray) -> tuple[BoolArray, int]:
@@ -117,18 +126,55 @@ def euler_number(occupancy: BoolArray) -> int:
     return int(_euler_number(np.ascontiguousarray(occupancy)))
 
 
-def _inside_cells(surface: Surface, cell: float) -> tuple[BoolArray, FloatArray]:
-    """Whether the centre of each cell is inside, and the lowest corner of the lattice."""
+def shares_inside(
+    surface: Surface, origin: FloatArray, pitch: float, shape: tuple[int, ...], fill_voids: bool
+) -> FloatArray:
+    """Share of each voxel of a grid that is inside, from 64 cells a voxel that do not straddle it.
+
+    `Sampling.coverage` takes each cell as evenly filled, which blurs the surface; this does not.
+    """
+    fine = tuple(n * _BLOCK for n in shape)
+    fill = _fill(surface, origin, np.full(3, pitch / _BLOCK), fine)
+    if fill_voids:
+        fill[_voids(fill)] = 1.0
+    x, y, z = shape
+    blocks = fill.reshape(x, _BLOCK, y, _BLOCK, z, _BLOCK)
+    shares: FloatArray = blocks.mean(axis=(1, 3, 5), dtype=np.float64)
+    return shares
+
+
+def _voids(fill: NDArray[np.float32]) -> BoolArray:
+    outside, _ = grid.components(fill <= 0.5)
+    enclosed: BoolArray = (fill <= 0.5) & (outside != outside[0, 0, 0])  # the margin is empty
+    return enclosed
+
+
+def _filled_cells(
+    surface: Surface, cell: float
+) -> tuple[NDArray[np.float32], FloatArray, FloatArray]:
+    """The share of each cell that is inside, the lattice's lowest corner, and a cell's edges."""
     low, high = surface.vertices.min(axis=0), surface.vertices.max(axis=0)
-    # A margin of at least two cells stays empty; whole blocks let an open mesh be looked over.
-    shape = _BLOCK * np.ceil(((high - low) / cell + 4) / _BLOCK).astype(int)
-    origin = (low + high) / 2 - shape * cell / 2
+    extent = high - low
+    if surface.closed:
+        # Whole cells across the bounding box: a face of the mesh in one of its planes is exact.
+        n = np.maximum(1, np.round(extent / cell))
+        edges, shape = extent / n, n.astype(int) + 2 * _MARGIN
+    else:
+        edges = np.full(3, cell)
+        shape = _BLOCK * np.ceil((extent / cell + 2 * _MARGIN) / _BLOCK).astype(int)
+    origin = (low + high) / 2 - shape * edges / 2
+    return _fill(surface, origin, edges, tuple(shape)), origin, edges
+
+
+def _fill(
+    surface: Surface, origin: FloatArray, edges: FloatArray, shape: tuple[int, ...]
+) -> NDArray[np.float32]:
     if not surface.closed:
-        return _inside_open(surface, origin, cell, tuple(shape)), origin
-    winding = np.zeros(tuple(shape), np.int16)
-    _cross_columns((surface.vertices - origin) / cell - 0.5, surface.faces, winding)
-    np.cumsum(winding, axis=2, out=winding)
-    return winding > 0, origin
+        return _inside_open(surface, origin, float(edges[0]), shape).astype(np.float32)
+    fill = np.zeros(shape, np.float32)
+    _cross_columns((surface.vertices - origin) / edges, surface.faces, fill)
+    np.cumsum(fill, axis=2, out=fill)
+    return np.clip(fill, 0, 1, out=fill)
 
 
 def _inside_open(
@@ -160,13 +206,14 @@ def _winds_round(surface: Surface, origin: FloatArray, cell: float, ask: BoolArr
 
 
 @kernel
-def _cross_columns(vertices: FloatArray, faces: FaceArray, change: NDArray[np.int16]) -> None:
-    """Add to each cell the change of the winding number since the cell below it.
+def _cross_columns(vertices: FloatArray, faces: FaceArray, change: NDArray[np.float32]) -> None:
+    """Add to each unit cell the change of the winding number since the cell below it.
 
-    Cell (i, j, k) has its centre at (i, j, k). A vertical line through a centre enters the solid
-    where it meets a face looking down, and leaves it where one looks up. Lines through an edge or
-    a vertex are taken as shifted by an infinitesimal amount, so that they meet one face of each
-    fan, and an edge is judged alike by both its faces because its ends are taken in index order.
+    A vertical line enters the solid where it meets a face looking down, and leaves it where one
+    looks up; where it does so inside a cell is kept, as a share of the cell. `_COLUMNS` squared
+    lines stand for each cell. A line through an edge or a vertex is taken as shifted by an
+    infinitesimal amount, so that it meets one face of each fan; an edge is judged alike by both
+    its faces because its ends are taken in index order.
     """
     sign = np.empty(3)
     area = np.empty(3)
@@ -177,19 +224,23 @@ def _cross_columns(vertices: FloatArray, faces: FaceArray, change: NDArray[np.in
                 for e in range(3):
                     a, b = faces[f, (e + 1) % 3], faces[f, (e + 2) % 3]
                     way = 1.0 if a < b else -1.0
-                    area[e], side = _side(vertices[min(a, b)], vertices[max(a, b)], i, j)
+                    p, q = vertices[min(a, b)], vertices[max(a, b)]
+                    area[e], side = _side(p, q, (i + 0.5) / _COLUMNS, (j + 0.5) / _COLUMNS)
                     sign[e], area[e] = way * side, way * area[e]
                 if sign[0] != sign[1] or sign[1] != sign[2] or sign[0] == 0:
                     continue
                 whole = area.sum()
                 height = (area * corners[:, 2]).sum() / whole if whole else corners[:, 2].max()
-                change[i, j, _first(height)] -= np.int16(sign[0])
+                k = int(height)
+                weight = sign[0] / _COLUMNS**2
+                change[i // _COLUMNS, j // _COLUMNS, k] -= weight * (k + 1 - height)
+                change[i // _COLUMNS, j // _COLUMNS, k + 1] -= weight * (height - k)
 
 
 @kernel
-def _first(height: float) -> int:
-    """The first integer above or at `height`."""
-    return int(np.ceil(height))
+def _first(x: float) -> int:
+    """Index of the first line at or beyond `x`."""
+    return int(np.ceil(x * _COLUMNS - 0.5))
 
 
 @kernel
@@ -219,7 +270,7 @@ def _mark_surface(vertices: FloatArray, faces: FaceArray, touched: BoolArray) ->
 
 
 @kernel
-def _interpolated(table: IntArray, xs: FloatArray, ys: FloatArray, zs: FloatArray) -> FloatArray:
+def _interpolated(table: FloatArray, xs: FloatArray, ys: FloatArray, zs: FloatArray) -> FloatArray:
     """The table at fractional indices; trilinear, hence exact for sums over cells of one value."""
     out = np.empty((xs.size, ys.size, zs.size))
     for i in range(xs.size):

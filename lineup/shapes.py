@@ -28,8 +28,8 @@ from .implicit import (
 from .meshes import FaceArray
 
 _REACH = 3.2
-_LOOK = 64
-_ACROSS = 120
+_LOOK = 48
+_ACROSS = 96
 
 
 def bunny(p: FloatArray) -> FloatArray:
@@ -233,7 +233,7 @@ def horse(p: FloatArray) -> FloatArray:
     hindleg = limb(
         side, [(-0.7, 0.2, 1.3), (-0.85, 0.2, 0.7), (-0.78, 0.2, 0.08)], [0.27, 0.14, 0.12]
     )
-    tail = limb(p, [(-0.95, 0, 1.55), (-1.2, 0, 1.3), (-1.25, 0, 0.75)], [0.1, 0.14, 0.1])
+    tail = limb(p, [(-0.95, 0, 1.6), (-1.3, 0, 1.35), (-1.4, 0, 0.6)], [0.12, 0.15, 0.11])
     return union(blend(0.1, barrel, rump, neck, foreleg, hindleg, tail), head, mane, ear)
 
 
@@ -312,7 +312,7 @@ MODELS: dict[str, Implicit] = {
 """The procedural models by name."""
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=len(MODELS))
 def triangulated(name: str) -> tuple[FloatArray, FaceArray]:
     """Vertices (V, 3) and outward triangles (F, 3) of a model, by contouring its formula.
 

@@ -19,22 +19,22 @@ from scipy import ndimage
 
 from .grid import BoolArray, FloatArray, voids
 from .meshes import Surface, surface_of, turned_upright
-from .sampling import Sampling, euler_number, largest_component, sampled
+from .sampling import Sampling, euler_number, largest_component, sampled, shares_inside
 from .solid import VoxelSolid, check_occupancy
 
 MAX_VOXELS = 200_000
 TOLERANCE = 0.02
 """How far from its target the count of a solid may be, as a share."""
 
-_PITCHES = np.linspace(0.955, 1.045, 7)
-_WIDE_PITCHES = np.linspace(0.7, 1.4, 57)
 _FEW = 4096
 """Up to this count a solid is coarse enough that quarter offsets and fine cells tell."""
-_SHARES = (0.3, 0.7)
-"""A voxel with less of it inside than the first is not taken, one with more than the last is."""
+_FULL = 0.7
+"""A voxel with more of it inside than this is always taken."""
 _COUNT_WEIGHT = 0.1
 """What missing the target by its whole costs, in IoU: smaller voxels alone raise the IoU."""
+_WRONG_TOPOLOGY = 0.02
 _NEAR_BEST = 0.01
+_SAME = 1e-9
 _SHORTLIST = 48
 
 
@@ -66,10 +66,12 @@ def voxelize(
     VoxelSolid
         Its ``source`` holds the input ("kind", "file", "sha256", "up", "faces_turned": faces that
         pointed the wrong way), the "target", the grid found ("pitch", and "origin": the lowest
-        corner of the occupancy array in the upright mesh), and how well it fits: "iou" with a
-        sampling of 64 or more cells a voxel; "voids_filled", "crumbs_dropped", "thin_voxels" (in
+        corner of the occupancy array in the upright mesh), and how well it fits: "iou" with 64
+        cells a voxel; "voids_filled", "crumbs_dropped", "thin_voxels" (in
         no 2x2 block of their layer), "euler_mesh" and "euler_solid" (Euler numbers of the finely
-        sampled mesh and of the solid), "note". Nothing is thickened.
+        sampled mesh and of the solid), "emptiest" (the least share of a taken voxel that is
+        inside), and "note": what fell short. Only a mesh that is thinner than a voxel is
+        thickened, by taking voxels less than 30 % inside, and the note says so.
 
     Raises
     ------
@@ -96,8 +98,11 @@ def voxelize(
 
 def check_voxels(voxels: object) -> None:
     """Refuse a target count that is not an integer from 1 to `MAX_VOXELS`."""
-    whole = isinstance(voxels, int | np.integer) and not isinstance(voxels, bool)
-    if not whole or not 1 <= int(str(voxels)) <= MAX_VOXELS:
+    if (
+        not isinstance(voxels, int | np.integer)
+        or isinstance(voxels, bool)
+        or not 1 <= voxels <= MAX_VOXELS
+    ):
         raise ValueError(f"voxels must be an integer from 1 to {MAX_VOXELS}, got {voxels!r}")
 
 
@@ -105,24 +110,40 @@ def fitted(surface: Surface, voxels: int, name: str, provenance: dict[str, Any])
     """The solid that fits an upright surface best; `provenance` is added to the surface's own."""
     sampling = sampled(surface, _cells_wanted(voxels))
     fit = _best_fit(sampling, voxels)
-    void_cells = sampling.n_void * (sampling.cell / fit.pitch) ** 3
+    voids_of_mesh = sampling.n_void * float((sampling.cell / fit.pitch).prod())
+    hollow = sampling.n_void > 0
+    shares = shares_inside(surface, fit.origin, fit.pitch, fit.occupancy.shape, hollow)
     occupancy, origin = _cropped(fit.occupancy, fit.origin, fit.pitch)
-    off = abs(fit.size - voxels) > TOLERANCE * voxels
     source = {
         **surface.provenance,
         **provenance,
         "target": int(voxels),
-        "iou": round(fit.iou, 6),
+        "iou": round(_iou(fit.occupancy, shares, float(shares.sum())), 6),
         "pitch": fit.pitch,
         "origin": [float(c) for c in origin],
-        "voids_filled": fit.voids_filled + round(void_cells),
+        "voids_filled": fit.voids_filled + round(voids_of_mesh),
         "crumbs_dropped": fit.crumbs_dropped,
         "thin_voxels": fit.thin,
         "euler_mesh": sampling.euler,
         "euler_solid": fit.euler,
-        "note": f"no grid gives {voxels} voxels within 2 %; nearest count" if off else "",
+        "emptiest": round(fit.emptiest, 6),
+        "note": _note(fit, voxels),
     }
     return VoxelSolid(occupancy, pitch=fit.pitch, name=name, source=source)
+
+
+def _note(fit: _Fit, voxels: int) -> str:
+    remarks = []
+    if _miss(fit.size, voxels):
+        remarks.append(f"no grid gives {voxels} voxels within 2 %: nearest count")
+    if fit.crumbs_dropped > TOLERANCE * fit.size:
+        remarks.append("pieces apart from the largest are left out")
+    if fit.emptiest < _SEARCHES[0].floor:
+        remarks.append(
+            f"thickened: the mesh is thinner than a voxel, and voxels only "
+            f"{fit.emptiest:.0%} inside are taken"
+        )
+    return "; ".join(remarks)
 
 
 @dataclass(frozen=True)
@@ -137,10 +158,37 @@ class _Fit:
     thin: int
     voids_filled: int
     crumbs_dropped: int
+    emptiest: float
 
     @property
     def size(self) -> int:
         return int(self.occupancy.sum())
+
+
+@dataclass(frozen=True)
+class _Search:
+    """Pitches and offsets to try; the next search follows where the best count is still far off.
+
+    Attributes
+    ----------
+    scales : pitches, as multiples of that whose cube is the mesh's volume over the count
+    steps : offsets in a voxel along each axis
+    floor : a voxel with less of it inside than this is not taken
+    content : how far off the count may be, as a share, to stop here
+    """
+
+    scales: FloatArray
+    steps: int
+    floor: float
+    content: float
+
+
+_SEARCHES = (
+    _Search(np.linspace(0.955, 1.045, 7), steps=4, floor=0.3, content=TOLERANCE),
+    _Search(np.linspace(0.7, 1.4, 57), steps=2, floor=0.3, content=0.5),
+    # Sheets much thinner than a voxel: fill says little, and far fewer voxels carry the volume.
+    _Search(np.geomspace(1, 12, 80), steps=2, floor=0.0, content=np.inf),
+)
 
 
 @dataclass(frozen=True)
@@ -161,60 +209,64 @@ def _cells_wanted(voxels: int) -> int:
 
 
 def _best_fit(sampling: Sampling, voxels: int) -> _Fit:
-    """The best fit of the near pitches, or of a wide range where those miss the count."""
-    usual = (sampling.volume / voxels) ** (1 / 3)
     fits: list[_Fit] = []
-    for scales, steps in ((_PITCHES, 4 if voxels <= _FEW else 2), (_WIDE_PITCHES, 2)):
-        cuts = list(_cuts(sampling, voxels, usual * scales, steps))
-        cuts.sort(key=lambda cut: (cut.miss, -cut.worth))
+    aim = voxels
+    for search in _SEARCHES:
+        cuts = sorted(_cuts(sampling, aim, search), key=lambda cut: (cut.miss, -cut.worth))
         fits += [_fit(sampling, cut) for cut in cuts[:_SHORTLIST]]
-        if any(_miss(fit.size, voxels) == 0 for fit in fits):
+        if not fits:
+            continue
+        nearest = min(fits, key=lambda fit: _miss(fit.size, voxels))
+        if abs(nearest.size - voxels) <= search.content * voxels:
             break
+        # Where pieces lie apart from the largest, it alone has to make up the count.
+        aim = round(voxels * (1 + nearest.crumbs_dropped / nearest.size))
     least = min(_miss(fit.size, voxels) for fit in fits)
     fits = [fit for fit in fits if _miss(fit.size, voxels) == least]
     best = max(fit.iou for fit in fits)
-    return max(
-        (fit for fit in fits if fit.iou >= best - _NEAR_BEST), key=lambda f: _worth(f, sampling)
-    )
+    fits = [fit for fit in fits if fit.iou >= best - _NEAR_BEST]
+    return max(fits, key=lambda fit: _worth(fit, voxels, sampling.euler))
 
 
-def _worth(fit: _Fit, sampling: Sampling) -> float:
+def _worth(fit: _Fit, voxels: int, euler: int) -> float:
     """IoU less what a path will suffer from: thin and missing voxels, a wrong topology."""
-    wrong = fit.euler != sampling.euler
-    return fit.iou - (0.5 * fit.thin + fit.crumbs_dropped) / fit.size - _NEAR_BEST * wrong
+    lost = (0.5 * fit.thin + fit.crumbs_dropped) / fit.size
+    off = _COUNT_WEIGHT * abs(fit.size / voxels - 1)
+    return fit.iou - lost - off - _WRONG_TOPOLOGY * (fit.euler != euler)
 
 
 def _miss(n: int, voxels: int) -> float:
     return max(0.0, abs(n - voxels) - TOLERANCE * voxels)
 
 
-def _cuts(sampling: Sampling, voxels: int, pitches: FloatArray, steps: int) -> Iterator[_Cut]:
-    """The best cut of each pitch and of each offset in `steps` steps a voxel along each axis."""
+def _cuts(sampling: Sampling, voxels: int, search: _Search) -> Iterator[_Cut]:
+    """The best cut of each grid searched that has one."""
+    steps = search.steps if voxels <= _FEW else 2
     offsets = list(product(np.arange(steps) / steps, repeat=3))
-    for pitch in pitches.tolist():
+    usual = (sampling.volume / voxels) ** (1 / 3)
+    for pitch in (usual * search.scales).tolist():
         total = sampling.volume / pitch**3
         for offset in offsets:
             shares = sampling.coverage(_lines(sampling, pitch, offset), pitch)
             fullest = np.sort(shares[shares > 0], axis=None)[::-1]
             inside = np.cumsum(fullest)
             n = np.arange(1, len(fullest) + 1)
-            iou = inside / (n + total - inside)
-            least = max(1, int((fullest > _SHARES[1]).sum()))
-            most = max(least, int((fullest >= _SHARES[0]).sum()))
             # Equal voxels are taken together, so that a symmetric shape stays symmetric.
-            drop = np.append(fullest[:-1] - fullest[1:], 1.0) > 1e-9
-            allowed = n[(n >= least) & (n <= most) & drop]
-            if not allowed.size:
-                allowed = n[drop]
-            miss = np.maximum(0, np.abs(allowed - voxels) - TOLERANCE * voxels)
-            worth = iou[allowed - 1] - _COUNT_WEIGHT * np.abs(allowed / voxels - 1)
+            drop = np.append(fullest[:-1] - fullest[1:], 1.0) > _SAME
+            first_left_out = np.append(fullest[1:], 0.0)
+            n = n[drop & (fullest >= search.floor) & (first_left_out <= _FULL)]
+            if not n.size:
+                continue
+            iou = inside[n - 1] / (n + total - inside[n - 1])
+            worth = iou - _COUNT_WEIGHT * np.abs(n / voxels - 1)
+            miss = np.maximum(0, np.abs(n - voxels) - TOLERANCE * voxels)
             at = int(np.lexsort((-worth, miss))[0])
-            yield _Cut(pitch, offset, int(allowed[at]), float(worth[at]), float(miss[at]))
+            yield _Cut(pitch, offset, int(n[at]), float(worth[at]), float(miss[at]))
 
 
 def _lines(sampling: Sampling, pitch: float, offset: tuple[float, ...]) -> list[FloatArray]:
     """Grid lines of each axis that cover the sampling; offset 0 puts one through its centre."""
-    half = np.array(sampling.table.shape) // 2 * sampling.cell
+    half = (np.array(sampling.table.shape) - 1) * sampling.cell / 2
     reaches = np.ceil(half / pitch)
     return [
         centre + pitch * (np.arange(-reach, reach + 2) + shift)
@@ -226,21 +278,25 @@ def _fit(sampling: Sampling, cut: _Cut) -> _Fit:
     lines = _lines(sampling, cut.pitch, cut.offset)
     shares = sampling.coverage(lines, cut.pitch)
     threshold = np.partition(shares, shares.size - cut.n, axis=None)[shares.size - cut.n]
-    occupancy, crumbs = largest_component(shares >= threshold - 1e-9)
+    occupancy, crumbs = largest_component(shares >= threshold - _SAME)
     void = voids(occupancy)
     occupancy = occupancy | void
-    inside = float(shares[occupancy].sum())
-    total = sampling.volume / cut.pitch**3
     return _Fit(
         occupancy=occupancy,
         origin=np.array([line[0] for line in lines]),
         pitch=cut.pitch,
-        iou=inside / (int(occupancy.sum()) + total - inside),
+        iou=_iou(occupancy, shares, sampling.volume / cut.pitch**3),
         euler=euler_number(occupancy),
         thin=thin_voxels(occupancy),
         voids_filled=int(void.sum()),
         crumbs_dropped=crumbs,
+        emptiest=float(threshold),
     )
+
+
+def _iou(occupancy: BoolArray, shares: FloatArray, total: float) -> float:
+    inside = float(shares[occupancy].sum())
+    return inside / (int(occupancy.sum()) + total - inside)
 
 
 def thin_voxels(occupancy: BoolArray) -> int:
