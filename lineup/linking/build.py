@@ -16,9 +16,9 @@ import numpy as np
 
 from .. import grid, planar
 from ..solid import VoxelPath
-from .layers import Layers
 from .msp import Ends, Prospects
-from .plan import Plan
+from .rating import Plan
+from .shape import Layers
 
 
 @dataclass(frozen=True)

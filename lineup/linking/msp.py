@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import grid, planar
-from .layers import Layers
-from .plan import Plan
+from .rating import Plan
+from .shape import Layers
 
 
 class Ends(NamedTuple):

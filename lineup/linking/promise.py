@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..reeb import depth_first_tree
-from .layers import Layers
 from .msp import Places, Prospects, prospects
-from .plan import Plan, plan
+from .rating import Plan, plan
+from .shape import Layers
 
 N_DRAWN = 30
 """Plans drawn at random for each start."""

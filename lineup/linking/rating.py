@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import grid, planar
-from .layers import Layers
+from .shape import Layers
 
 
 @dataclass(frozen=True, eq=False)
