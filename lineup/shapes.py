@@ -167,14 +167,10 @@ def elephant(p: FloatArray) -> FloatArray:
     )
     foreleg = cylinder(side, (0.48, 0.34, 0), (0.45, 0.33, 1.0), 0.21, 0.25)
     hindleg = cylinder(side, (-0.68, 0.34, 0), (-0.65, 0.33, 1.0), 0.21, 0.26)
-    ear = blend(
-        0.08,
-        ellipsoid(side, (0.72, 0.52, 1.45), (0.32, 0.11, 0.46)),
-        ball(side, (0.75, 0.38, 1.45), 0.1),
-    )
+    ear = ellipsoid(side, (0.72, 0.48, 1.45), (0.32, 0.14, 0.46))
     tusk = limb(side, [(1.15, 0.26, 1.2), (1.4, 0.42, 0.98), (1.72, 0.46, 1.02)], [0.1, 0.09, 0.08])
-    tail = limb(p, [(-1.05, 0, 1.3), (-1.2, 0, 0.9), (-1.18, 0, 0.6)], [0.1, 0.08, 0.08])
-    return union(blend(0.1, body, head, trunk, foreleg, hindleg), ear, tusk, tail)
+    tail = limb(p, [(-1.05, 0, 1.3), (-1.3, 0, 0.95), (-1.32, 0, 0.6)], [0.1, 0.08, 0.08])
+    return union(blend(0.1, body, head, trunk, foreleg, hindleg, ear), tusk, tail)
 
 
 def elk(p: FloatArray) -> FloatArray:

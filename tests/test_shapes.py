@@ -6,11 +6,7 @@ import trimesh
 
 from lineup import implicit, shapes
 
-GENUS = {
-    "bunny": 0, "decocube": 13, "cannon": 0, "two_holed_torus": 2, "duck": 0, "armadillo": 0,
-    "dinosaur": 0, "aircraft": 0, "chair": 2, "table": 0, "mug": 1, "teddy": 0, "horse": 0,
-    "camel": 0, "deer": 0,
-}  # fmt: skip
+GENUS = {"decocube": 13, "two_holed_torus": 2, "chair": 2, "mug": 1}
 
 
 @pytest.mark.parametrize("name", sorted(shapes.MODELS))
@@ -20,16 +16,13 @@ def test_surface_is_closed_outward_and_standing(name: str) -> None:
     assert mesh.is_winding_consistent
     assert mesh.volume > 0
     assert mesh.body_count == 1
-    if name in GENUS:
-        assert mesh.euler_number == 2 - 2 * GENUS[name]
+    assert mesh.euler_number == 2 - 2 * GENUS.get(name, 0)
 
 
-@pytest.mark.parametrize("name", sorted(set(shapes.MODELS) - {"mug"}))
+@pytest.mark.parametrize("name", sorted(set(shapes.MODELS) - {"mug"}))  # its rims are sharp
 def test_surface_lies_on_the_formula(name: str) -> None:
     vertices, _ = shapes.triangulated(name)
-    inward = shapes.MODELS[name](vertices * 0.0 + vertices.mean(axis=0))
     assert np.abs(shapes.MODELS[name](vertices)).max() < 0.03
-    assert inward.shape == (len(vertices),)
 
 
 @pytest.mark.parametrize("name", sorted(set(shapes.MODELS) - {"two_holed_torus", "decocube"}))
