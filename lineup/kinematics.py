@@ -51,9 +51,21 @@ def frames(motion: Motion, every: int = 1, substeps: int = 1) -> Iterator[FloatA
     ------
     ValueError
         If `every` or `substeps` is not positive, or a move cannot be carried out.
+
+    Examples
+    --------
+    >>> import numpy as np, lineup as lu
+    >>> path = lu.layered_path(lu.VoxelSolid(np.ones((2, 2, 1), bool)))
+    >>> poses = list(lu.frames(lu.unfold(path)))
+    >>> len(poses), np.ptp(poses[-1], axis=0).max()
+    (3, 3.0)
     """
     if every < 1 or substeps < 1:
         raise ValueError(f"every and substeps must be at least 1, got {every} and {substeps}")
+    return _frames(motion, every, substeps)
+
+
+def _frames(motion: Motion, every: int, substeps: int) -> Iterator[FloatArray]:
     pose = motion.start.astype(np.float64)
     yield pose.copy()
     for k, move in enumerate(motion.moves, start=1):
@@ -66,7 +78,13 @@ def frames(motion: Motion, every: int = 1, substeps: int = 1) -> Iterator[FloatA
 
 
 def moved(pose: FloatArray, move: IntArray, motion: Motion, t: float) -> FloatArray:
-    """The pose after the share t (0 to 1) of one move's angle."""
+    """The pose after the share t (0 to 1) of one move's angle.
+
+    Raises
+    ------
+    ValueError
+        If the move is of no known kind, or would not turn its bar by 90 degrees.
+    """
     kind, joint, other, value = (int(x) for x in move)
     angle = t * np.pi / 2
     if kind == Move.TILT:
@@ -82,6 +100,8 @@ def moved(pose: FloatArray, move: IntArray, motion: Motion, t: float) -> FloatAr
         return out
     beyond = slice(other, None) if other > joint else slice(None, other + 1)
     bar, target = pose[other] - pose[joint], DIRECTIONS[value].astype(np.float64)
+    if abs(other - joint) != 1 or abs(bar @ target) > 1e-6:
+        raise ValueError(f"move {move.tolist()} does not turn a bar by 90 degrees")
     if kind == Move.PEEL:
         out[beyond] += _turned(bar[None], target[None], angle)[0] - bar
     elif kind == Move.SWING:

@@ -18,7 +18,17 @@ ROOT = Path(__file__).parents[1]
 
 # A module imports only from those before it; the files of a folder share its place.
 ORDER = [
-    *("_record", "_jit", "grid", "solid", "kinematics", "notation", "_sweeps", "judging"),
+    *(
+        "_record",
+        "_options",
+        "_jit",
+        "grid",
+        "solid",
+        "kinematics",
+        "notation",
+        "_sweeps",
+        "judging",
+    ),
     *("meshes", "implicit", "shapes", "sampling", "voxelization", "catalog"),
     *("reeb", "planar", "linking", "layered", "bounds", "motion", "folding", "trimming"),
     *("storage", "verification", "pipeline", "_sources", "engines", "sweep", "tables", "draw"),

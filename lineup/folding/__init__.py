@@ -1,0 +1,76 @@
+"""Path and motion designed together."""
+
+from collections.abc import Callable
+from typing import Any
+
+from .._options import checked
+from ..layered import layered_path
+from ..motion import unfold
+from ..solid import Folding, VoxelSolid
+from .growth import growth
+
+
+def fold(
+    solid: VoxelSolid,
+    method: str = "growth",
+    length: int | None = None,
+    seed: int = 0,
+    **options: Any,
+) -> Folding:
+    """A path through `solid` and a motion that unfolds it.
+
+    Parameters
+    ----------
+    method : str
+        A key of `FOLD_METHODS`. ``"growth"`` changes path and motion together and always ends
+        straight; its options are `paths`, `trial_rounds`, `rounds` and `progress`.
+        ``"layered"`` unfolds a layered path (Sections 4 and 6), which may get stuck; its option
+        is `starts`.
+    length : int, optional
+        Even number of voxels to trim to. A path that stays shorter is returned as it is.
+    seed : int
+        The same solid, seed and options give the same folding.
+
+    Returns
+    -------
+    Folding
+        Only `certify` says that its motion is free of collisions.
+
+    Raises
+    ------
+    ValueError
+        If the method or an option is unknown, the solid is one voxel, or the length is odd,
+        less than 2 or more than the solid's voxels.
+
+    Examples
+    --------
+    >>> import numpy as np, lineup as lu
+    >>> solid = lu.VoxelSolid(np.ones((4, 4, 3), bool))
+    >>> folding = lu.fold(solid, rounds=100, trial_rounds=10)
+    >>> len(folding.path), lu.certify(folding.motion).ok
+    (48, True)
+    """
+    checked(FOLD_METHODS, method, options, "fold method")
+    if solid.size < 2:
+        raise ValueError("a path needs at least two voxels, the solid has 1")
+    if length is not None and not (length % 2 == 0 and 2 <= length <= solid.size):
+        raise ValueError(
+            f"length must be an even number from 2 to the solid's {solid.size} voxels, got {length}"
+        )
+    folding = FOLD_METHODS[method](solid, seed, length, **options)
+    if length is None or len(folding.path) <= length:
+        return folding
+    from ..trimming import trim  # stands behind this module: it also shortens foldings
+
+    trimmed: Folding = trim([folding], length)[0]
+    return trimmed
+
+
+def _layered(solid: VoxelSolid, seed: int, length: int | None, *, starts: int = 4) -> Folding:
+    del length  # the caller trims
+    path = layered_path(solid, seed=seed, starts=starts)
+    return Folding(path, unfold(path, seed=seed))
+
+
+FOLD_METHODS: dict[str, Callable[..., Folding]] = {"growth": growth, "layered": _layered}
+"""The planners of path and motion by name: functions of a solid, seed, length and options."""

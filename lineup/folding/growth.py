@@ -1,0 +1,169 @@
+"""Certified growth: path and motion designed together (in place of Algorithms 3 and 4).
+
+A start path loses the pieces that keep it from being peeled straight; then voxels are won back
+by changes that each keep a valid plan. Every state on the way has one, so the search can stop
+anywhere; what it cannot promise is how many voxels it reaches. See PAPER.md, deviation 4.
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from .. import grid as voxels_of
+from ..grid import IntArray
+from ..layered import layered_paths
+from ..motion._chain import Grid, box_grid, cells_of
+from ..motion.plan import left_folded, motion_of, peel_plan
+from ..solid import Folding, VoxelPath, VoxelSolid
+from ._fold import NEVER, Fold, load, new_fold
+from ._moves import Body, anneal, fill, random_shortest, worth
+
+SURFACE_WORTH = 1.5
+HOT, COLD = 3.0, 0.1  # worth lost with likelihood 1/e, at first and at last
+BATCH = 400
+BIASES = (0.02, 0.98, 0.02, 0.5)
+
+
+def body_of(solid: VoxelSolid) -> tuple[Grid, Body]:
+    """The grid of a solid, and what its cells are worth."""
+    grid = box_grid(solid.occupancy.shape)
+    inside = np.pad(solid.occupancy, 1).ravel()
+    surface = np.pad(voxels_of.surface(solid.occupancy), 1).ravel()
+    return grid, Body(inside, np.where(surface, SURFACE_WORTH, 1.0))
+
+
+def straightenable(
+    grid: Grid, cells: IntArray, rng: np.random.Generator, tries: int = 400
+) -> tuple[IntArray, IntArray]:
+    """A path with a complete peel plan, got from `cells` by shortcuts where the plan gets stuck.
+
+    A shortcut pays if it frees eight joints more than it costs; short ones are tried first. If
+    the tries run out, only the first bar of the path is left, which is always straight.
+    """
+    plans = [peel_plan(grid, cells, rng, bias=bias) for bias in 2 * BIASES]
+    states, length = min(plans, key=left_folded), 4
+    for _ in range(0, tries, 4):
+        left = left_folded(states)
+        if left <= 1:
+            return cells, states
+        cuts = [_cut(grid, cells, states, length, rng) for _ in range(4)]
+        paying = [
+            (path, plan)
+            for path, plan in cuts
+            if left_folded(plan) <= 1 or left - left_folded(plan) >= len(cells) - len(path) + 8
+        ]
+        if paying:
+            cells, states = max(paying, key=lambda cut: len(cut[0]) - left_folded(cut[1]) / 2)
+        length = 4 if paying else min(2 * length, left)
+    return cells[:2], np.array([[0, 1, 0, 0]], np.int32)
+
+
+def _cut(
+    grid: Grid, cells: IntArray, states: IntArray, length: int, rng: np.random.Generator
+) -> tuple[IntArray, IntArray]:
+    """Shortcut some `length` cells near one stuck end; the shorter path and a plan of it."""
+    a, b = int(states[-1, 0]), int(states[-1, 1])
+    reach = min(length + int(rng.integers(length)), b - a)
+    slack = int(rng.integers(4))
+    i, j = (a - slack, a + reach) if rng.random() < 0.5 else (b - reach, b + slack)
+    i, j = max(i, 0), min(j, len(cells) - 1)
+    free = np.zeros(len(grid.outside), bool)
+    free[cells[i : j + 1]] = True
+    way = random_shortest(grid, free, cells[i], cells[j], float(rng.choice((0.01, 0.5, 2.0))), rng)
+    shorter = np.concatenate([cells[:i], way, cells[j + 1 :]])
+    return shorter, peel_plan(grid, shorter, rng, patience=1000)
+
+
+def growth(
+    solid: VoxelSolid,
+    seed: int,
+    length: int | None,
+    *,
+    paths: Sequence[VoxelPath] | None = None,
+    trial_rounds: int = 2_000,
+    rounds: int = 16_000,
+    progress: Callable[[float], None] | None = None,
+) -> Folding:
+    """Grow a fold from each start, and the best of them for longer.
+
+    Parameters
+    ----------
+    length : int, optional
+        Stop at this many voxels.
+    paths : sequence of VoxelPath, optional
+        Start paths; layered paths by default. One start more is a single bar.
+    trial_rounds, rounds : int
+        Rounds of annealing for each start, and for the best of them.
+    progress : function, optional
+        Told the share of the work done, 0 to 1.
+    """
+    for name, value in (("trial_rounds", trial_rounds), ("rounds", rounds)):
+        if value < 0:
+            raise ValueError(f"{name} must not be negative, got {value}")
+    rng = np.random.default_rng(seed)
+    grid, body = body_of(solid)
+    starts = [path.voxels for path in (layered_paths(solid, seed) if paths is None else paths)]
+    starts.append(_exposed_bar(solid))
+    target = NEVER if length is None else length
+    report = progress or (lambda share: None)
+    work = len(starts) * trial_rounds + rounds
+    best: Fold | None = None
+    for k, start in enumerate(starts):
+        fold = _grown(grid, body, cells_of(start, solid.occupancy.shape), rng, target)
+        _deepen(grid, body, fold, rng, trial_rounds, target)
+        report((k + 1) * trial_rounds / max(work, 1))
+        if best is None or worth(body, fold) > worth(body, best):
+            best = fold
+    assert best is not None  # the single bar is always a start
+    spent = len(starts) * trial_rounds
+    _deepen(grid, body, best, rng, rounds, target, lambda done: report((spent + done) / work))
+    return folding_of(solid, grid, best, "growth")
+
+
+def folding_of(solid: VoxelSolid, grid: Grid, fold: Fold, method: str) -> Folding:
+    """The path and the motion that a fold stands for."""
+    path = fold.path[: fold.size[0]]
+    inside = np.pad(solid.occupancy, 1).ravel()
+    inside[path] = False
+    dropped = grid.xyz[np.flatnonzero(inside)]
+    voxels = grid.xyz[path]
+    motion = motion_of(voxels, fold.states[: fold.size[1]])
+    return Folding(VoxelPath(voxels, dropped=dropped, method=method), motion)
+
+
+def _exposed_bar(solid: VoxelSolid) -> IntArray:
+    """Two adjacent voxels, the second with nothing of the solid on one of its sides."""
+    voxels = np.argwhere(solid.occupancy).astype(np.int32)
+    top = voxels[np.lexsort(voxels.T)[-1]]
+    beside = np.abs(voxels - top).sum(axis=1) == 1
+    return np.stack([voxels[beside][0], top])
+
+
+def _grown(grid: Grid, body: Body, cells: IntArray, rng: np.random.Generator, target: int) -> Fold:
+    """A start path made straightenable, with what fits in at once."""
+    n_voxels = int(body.solid.sum())
+    cells, states = straightenable(grid, cells, rng)
+    fold = new_fold(len(body.solid), cells, states, n_voxels + 16)
+    fill(grid, body, fold, 20 * n_voxels, target, rng)
+    return fold
+
+
+def _deepen(
+    grid: Grid,
+    body: Body,
+    fold: Fold,
+    rng: np.random.Generator,
+    rounds: int,
+    target: int,
+    report: Callable[[int], None] = lambda done: None,
+) -> None:
+    """Anneal in batches, with another plan of the same path for each, as far as one is found."""
+    for done in range(0, rounds, BATCH):
+        batch = min(BATCH, rounds - done)
+        hot, cold = (HOT * (1 - x / rounds) + COLD for x in (done, done + batch))
+        anneal(grid, body, fold, batch, hot, cold, target, rng)
+        path = fold.path[: fold.size[0]].copy()
+        states = peel_plan(grid, path, rng, bias=float(rng.choice(BIASES)))
+        if left_folded(states) <= 1:
+            load(fold, path, states)
+        report(done + batch)

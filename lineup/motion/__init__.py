@@ -1,0 +1,56 @@
+"""Unfolding a given path into a straight line (Sections 6 and 7)."""
+
+from collections.abc import Callable
+from typing import Any
+
+from .._options import checked
+from ..solid import Motion, VoxelPath
+from .accordion import accordion
+from .peel import peel
+
+
+def unfold(path: VoxelPath, method: str = "auto", seed: int = 0, **options: Any) -> Motion:
+    """A motion that unfolds `path`, as far as the method gets (Section 6).
+
+    Parameters
+    ----------
+    method : str
+        A key of `MOTION_METHODS`. ``"accordion"`` straightens a monotone path in one move;
+        ``"peel"`` searches for an order in which the two ends let go of bar after bar, with
+        options `tries` and `patience`; ``"auto"`` peels where the accordion cannot.
+    seed : int
+        The same path, seed and options give the same motion.
+
+    Returns
+    -------
+    Motion
+        Its `straight` and `reason` tell how it ended; only `certify` says that it is free of
+        collisions.
+
+    Raises
+    ------
+    ValueError
+        If the method or an option is unknown, or the path is not one of adjacent voxels.
+
+    Examples
+    --------
+    >>> import numpy as np, lineup as lu
+    >>> path = lu.layered_path(lu.VoxelSolid(np.ones((4, 4, 3), bool)))
+    >>> lu.unfold(path).reason
+    'straight'
+    """
+    checked(MOTION_METHODS, method, options, "motion method")
+    return MOTION_METHODS[method](path, seed, **options)
+
+
+def _auto(path: VoxelPath, seed: int, *, tries: int = 12, patience: int = 20_000) -> Motion:
+    motion = accordion(path, seed)
+    return motion if motion.straight else peel(path, seed, tries=tries, patience=patience)
+
+
+MOTION_METHODS: dict[str, Callable[..., Motion]] = {
+    "accordion": accordion,
+    "peel": peel,
+    "auto": _auto,
+}
+"""The planners of a motion by name: functions of a path, a seed and keyword-only options."""
