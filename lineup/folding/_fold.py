@@ -192,6 +192,8 @@ def _find_span(fold: Fold, i: int, j: int) -> Span:
     if not (j <= a or i >= b or is_middle):
         return nothing
     end = 0 if j <= a else 1
+    if is_middle and b == fold.size[0] - 1 and a > 0:
+        end = 0  # the end that has a rod
     outer, inner = (i, j) if end == 0 else (j, i)
     stop = last if is_middle else fold.when[fold.path[inner]]
     first = stop
@@ -219,6 +221,9 @@ def _plan_piece(grid: Grid, fold: Fold, span: Span, piece: IntArray) -> IntArray
     level = np.empty(6 * len(piece), np.int32)
     level[0] = start
     n_level, goal = 1, -1
+    if span.outer == (fold.size[0] - 1) * span.end:  # it has no rod yet, so none to swing
+        parent[:6] = -1
+        n_level = int(_clear_ray(grid, fold, span, piece[0], start, 1))
     for _ in range(MAX_SWINGS + 1):
         n_level = _peel_on(grid, fold, span, piece, goal_place, parent, level, n_level)
         for k in range(n_level):

@@ -159,11 +159,21 @@ def _adjacent(grid: Grid, cell: int, other: int) -> bool:
 
 
 @kernel
-def contract(grid: Grid, fold: Fold, i: int) -> bool:
-    """Take out joints i + 1 and i + 2 where i and i + 3 are adjacent, if a plan remains."""
-    if not _adjacent(grid, fold.path[i], fold.path[i + 3]):
-        return False
-    return replace(grid, fold, i, i + 3, np.empty(0, np.int32))
+def contract_all(grid: Grid, fold: Fold, keep: BoolArray, length: int) -> None:
+    """Contract pairs of index 2 down to `length`, none with a voxel to `keep`.
+
+    Joints i + 1 and i + 2 may go where i and i + 3 are adjacent and a plan remains.
+    """
+    nothing = np.empty(0, np.int32)
+    changed = True
+    while changed and fold.size[0] > length:
+        changed = False
+        i = 0
+        while i + 3 < fold.size[0] and fold.size[0] > length:
+            kept = keep[fold.path[i + 1]] or keep[fold.path[i + 2]]
+            if not kept and _adjacent(grid, fold.path[i], fold.path[i + 3]):
+                changed |= replace(grid, fold, i, i + 3, nothing)
+            i += 1
 
 
 @kernel

@@ -30,7 +30,8 @@ def unfold(path: VoxelPath, method: str = "auto", seed: int = 0, **options: Any)
     Raises
     ------
     ValueError
-        If the method or an option is unknown, or the path is not one of adjacent voxels.
+        If the method or an option is unknown, or the path has less than two voxels or voxels
+        in a row that are not adjacent.
 
     Examples
     --------
@@ -40,6 +41,8 @@ def unfold(path: VoxelPath, method: str = "auto", seed: int = 0, **options: Any)
     'straight'
     """
     checked(MOTION_METHODS, method, options, "motion method")
+    if len(path) < 2:
+        raise ValueError(f"a motion needs a path of at least two voxels, got {len(path)}")
     return MOTION_METHODS[method](path, seed, **options)
 
 

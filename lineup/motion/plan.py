@@ -73,6 +73,11 @@ def motion_of(voxels: IntArray, states: IntArray) -> Motion:
     return Motion(voxels, rows, DIAMETER, MAX_BEND_DEG, straight, reason)
 
 
+def has_peel_plan(motion: Motion) -> bool:
+    """Whether a motion ends straight and has no other moves than peels and swings."""
+    return motion.straight and bool(np.isin(motion.moves[:, 0], (Move.PEEL, Move.SWING)).all())
+
+
 def states_of(motion: Motion) -> IntArray:
     """The plan behind a motion of peels and swings; the inverse of `motion_of`.
 
@@ -81,7 +86,7 @@ def states_of(motion: Motion) -> IntArray:
     ValueError
         If the motion has other kinds of move or does not end straight.
     """
-    if not motion.straight or not np.isin(motion.moves[:, 0], (Move.PEEL, Move.SWING)).all():
+    if not has_peel_plan(motion):
         raise ValueError("only a motion of peels and swings that ends straight has a peel plan")
     state = [0, len(motion.start) - 1, _first_rod(motion, 0), _first_rod(motion, 1)]
     states = [tuple(state)]

@@ -1,0 +1,215 @@
+"""Algorithm 1: from solids to poses of one chain, and back to a straight line."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from . import grid
+from .bounds import path_bound
+from .catalog import model, models
+from .folding import fold
+from .judging import certify, certify_path
+from .layered import layered_paths
+from .motion.plan import DIAMETER, MAX_BEND_DEG
+from .solid import Certificate, Design, Folding, VoxelSolid
+from .storage import save
+from .trimming import trim
+from .voxelization import voxelize
+
+LIKELY_COVERAGE = 0.97
+MAX_TRIES = 6
+MIN_BLOCKS = 2
+
+Source = Any
+"""A name of the catalogue, a mesh file, a trimesh or pyvista mesh, or a VoxelSolid."""
+
+
+@dataclass(frozen=True)
+class _Result:
+    solid: VoxelSolid
+    folding: Folding
+    certificate: Certificate
+    row: dict[str, Any]
+
+
+def lineup(
+    models: Sequence[Source],
+    blocks: int = 754,
+    *,
+    seed: int = 0,
+    progress: Callable[[str, str], None] | None = None,
+) -> Design:
+    """Fold one chain of `blocks` building blocks into every model (Algorithm 1).
+
+    The number of voxels of each model is chosen so that its path reaches the common length,
+    and the path is trimmed to exactly that.
+
+    Parameters
+    ----------
+    models : sequence
+        Names of the catalogue, mesh files, meshes, or solids; a VoxelSolid is taken as it is.
+    blocks : int
+        Number of building blocks; each is two voxels.
+    progress : function, optional
+        Told (name, stage); the last stage of a model is "done" or "failed: reason".
+
+    Returns
+    -------
+    Design
+        A model that fails is a row of the table with its reason, and is in no other part.
+
+    Raises
+    ------
+    ValueError
+        If there are no models, or fewer than two blocks.
+
+    Examples
+    --------
+    >>> import lineup as lu
+    >>> design = lu.lineup(["duck", "mug"], blocks=40)
+    >>> [len(folding.path) for folding in design.foldings], [c.ok for c in design.certificates]
+    ([80, 80], [True, True])
+    """
+    if len(models) == 0:
+        raise ValueError("there are no models; give at least one name, file, mesh or solid")
+    _check_blocks(blocks)
+    tell = progress or (lambda name, stage: None)
+    results, rows = [], []
+    for number, source in enumerate(models):
+        name = name_of(source, number)
+        try:
+            result = _line_up(source, blocks, seed, partial(tell, name))
+        except (ValueError, OSError) as error:
+            rows.append({"model": name, "blocks": blocks, "failure": str(error)})
+            tell(name, f"failed: {error}")
+            continue
+        results.append(result)
+        rows.append({"model": name, "blocks": blocks, **result.row})
+        tell(name, "done")
+    return Design(
+        tuple(result.solid for result in results),
+        tuple(result.folding for result in results),
+        tuple(result.certificate for result in results),
+        pd.DataFrame(rows),
+    )
+
+
+def table2_task(
+    model: str, blocks: int, seed: int, *, folder: Path, progress: Callable[[str], None]
+) -> dict[str, Any]:
+    """One row of Table 2; stores ``MODEL.solid.json`` and ``MODEL.folding.json`` in `folder`."""
+    _check_blocks(blocks)
+    result = _line_up(model, blocks, seed, progress)
+    save(result.solid, folder / f"{model}.solid.json")
+    save(result.folding, folder / f"{model}.folding.json")
+    return result.row
+
+
+def name_of(source: Source, number: int = 0) -> str:
+    """What a source is called in tables and file names."""
+    if isinstance(source, str | os.PathLike):
+        return Path(source).stem
+    return str(getattr(source, "name", "")) or f"model{number + 1}"
+
+
+def _check_blocks(blocks: int) -> None:
+    if blocks < MIN_BLOCKS:
+        raise ValueError(f"blocks must be at least {MIN_BLOCKS}, got {blocks}")
+
+
+def _line_up(source: Source, blocks: int, seed: int, tell: Callable[[str], None]) -> _Result:
+    """Voxelize, fold, trim and judge one model; more voxels again while its path is too short."""
+    length = 2 * blocks
+    wanted = round(length / LIKELY_COVERAGE)
+    clock = _Clock(tell)
+    for _ in range(MAX_TRIES):
+        with clock("voxelize"):
+            solid = _solid(source, wanted)
+        with clock("layered"):
+            paths = layered_paths(solid, seed)
+        with clock("fold"):
+            folding = fold(solid, seed=seed, paths=paths)
+        found = len(folding.path)
+        if found >= length or isinstance(source, VoxelSolid):
+            break
+        wanted = max(round(1.004 * wanted * length / found), wanted + 2)
+    if found < length:
+        raise ValueError(
+            f"the longest path found has {found} of the {length} voxels of {blocks} blocks; "
+            "use fewer blocks, or a solid with more voxels"
+        )
+    with clock("trim"):
+        trimmed = trim([folding], length)[0]
+    with clock("certify"):
+        path_certificate = certify_path(trimmed.path, solid)
+        certificate = certify(trimmed.motion, DIAMETER, MAX_BEND_DEG)
+    judged = {
+        **_path_row(solid, len(paths[0]), found, trimmed),
+        **_verdict_row(certificate, path_certificate),
+    }
+    return _Result(solid, trimmed, certificate, {**judged, **clock.seconds})
+
+
+def _solid(source: Source, voxels: int) -> VoxelSolid:
+    if isinstance(source, VoxelSolid):
+        return source
+    if isinstance(source, str) and source in set(models()["name"]):
+        return model(source, voxels=voxels)
+    return voxelize(source, voxels=voxels)
+
+
+def _path_row(solid: VoxelSolid, layered: int, folded: int, trimmed: Folding) -> dict[str, Any]:
+    surface = grid.surface(solid.occupancy)
+    bound = path_bound(solid)
+    return {
+        "source": str(solid.source.get("kind", "solid")),
+        "voxels": solid.size,
+        "iou": solid.source.get("iou"),
+        "layered_coverage": layered / solid.size,
+        "folded_coverage": folded / solid.size,
+        "bound": bound,
+        "gap": bound - folded,
+        "surface_kept": float(surface[tuple(trimmed.path.voxels.T)].sum() / surface.sum()),
+        "length": len(trimmed.path),
+        "moves": len(trimmed.motion),
+    }
+
+
+def _verdict_row(motion: Certificate, path: Certificate) -> dict[str, Any]:
+    faults = [c.reason for c in (path, motion) if not c.ok]
+    return {
+        "straight": motion.ok,
+        "certified": motion.ok and path.ok,
+        "diameter": motion.diameter,
+        "max_bend_deg": motion.max_bend_deg,
+        "clearance": motion.clearance,
+        "reason": "; ".join(faults) or "certified",
+    }
+
+
+class _Clock:
+    """Seconds spent in each stage, told as each begins."""
+
+    def __init__(self, tell: Callable[[str], None]) -> None:
+        self.seconds: dict[str, float] = {}
+        self._tell = tell
+
+    def __call__(self, stage: str) -> _Clock:
+        self._stage = f"seconds_{stage}"
+        self._tell(stage)
+        return self
+
+    def __enter__(self) -> None:
+        self._start = time.perf_counter()
+
+    def __exit__(self, *exception: object) -> None:
+        spent = time.perf_counter() - self._start
+        self.seconds[self._stage] = self.seconds.get(self._stage, 0.0) + spent

@@ -1,0 +1,74 @@
+"""Algorithm 1 from end to end."""
+
+import numpy as np
+import pytest
+import trimesh
+
+import lineup as lu
+from lineup.pipeline import table2_task
+
+
+def check_design(design, blocks):
+    assert len(design.models) == len(design.foldings) == len(design.certificates)
+    for solid, folding, certificate in zip(
+        design.models, design.foldings, design.certificates, strict=True
+    ):
+        assert len(folding.path) == 2 * blocks
+        assert lu.certify_path(folding.path, solid).ok
+        assert certificate.ok
+        assert certificate == lu.certify(folding.motion)
+        assert 1 - 1e-9 <= certificate.clearance
+
+
+def test_names_files_meshes_and_solids_become_poses_of_one_chain(tmp_path):
+    ball = trimesh.creation.icosphere()
+    ball.export(tmp_path / "ball.ply")
+    sources = ["mug", tmp_path / "ball.ply", ball, lu.VoxelSolid(np.ones((5, 5, 5), bool))]
+    design = lu.lineup(sources, blocks=50)
+    check_design(design, 50)
+    assert design.table["model"].tolist() == ["mug", "ball", "model3", "model4"]
+    assert design.table["certified"].all()
+
+
+def test_a_model_that_fails_is_a_row_and_stops_no_other(tmp_path):
+    told = []
+    sources = [tmp_path / "none.obj", "duck", lu.VoxelSolid(np.ones((2, 2, 2), bool), name="dice")]
+    design = lu.lineup(sources, blocks=30, progress=lambda *said: told.append(said))
+    check_design(design, 30)
+    failures = design.table["failure"].tolist()
+    assert "none.obj" in failures[0]
+    assert failures[2].startswith("the longest path found has 8 of the 60 voxels")
+    assert len(design.models) == 1
+    assert told[-1] == ("dice", f"failed: {failures[2]}")
+    assert ("duck", "done") in told
+
+
+def test_the_row_says_what_was_measured(tmp_path):
+    row = table2_task("mug", 60, 0, folder=tmp_path, progress=lambda stage: None)
+    solid = lu.load(tmp_path / "mug.solid.json")
+    folding = lu.load(tmp_path / "mug.folding.json")
+    assert row["voxels"] == solid.size
+    assert row["length"] == len(folding.path) == 120
+    assert row["bound"] == lu.path_bound(solid)
+    assert row["moves"] == len(folding.motion)
+    assert row["gap"] == row["bound"] - round(row["folded_coverage"] * solid.size) >= 0
+    assert row["certified"]
+    assert 0.5 < row["surface_kept"] <= 1
+    assert row["source"] in ("procedural", "folder", "original")
+
+
+def test_equal_seeds_give_equal_bytes(tmp_path):
+    for name in ("a", "b"):
+        (tmp_path / name).mkdir()
+        table2_task("teddy", 40, 3, folder=tmp_path / name, progress=lambda stage: None)
+    for kind in ("solid", "folding"):
+        one, other = (tmp_path / n / f"teddy.{kind}.json" for n in ("a", "b"))
+        assert one.read_bytes() == other.read_bytes()
+
+
+def test_bad_use_is_refused():
+    with pytest.raises(ValueError, match="there are no models"):
+        lu.lineup([])
+    for blocks in (-3, 0, 1):
+        with pytest.raises(ValueError, match=f"blocks must be at least 2, got {blocks}"):
+            lu.lineup(["duck"], blocks=blocks)
