@@ -48,6 +48,8 @@ $(STAMP): pyproject.toml constraints.txt
 	@$(BIN)/python -m pip install --quiet --constraint constraints.txt uv || echo "no uv, going on with pip"
 	@{ test -x $(BIN)/uv && $(BIN)/uv pip install --quiet --python $(BIN)/python $(WANTED); } \
 	  || $(BIN)/python -m pip install --quiet $(WANTED)
+	@echo "compiling the kernels, once"
+	@$(BIN)/python -c 'import lineup as lu; lu.lineup(["duck"], blocks=40)'
 	@touch $@
 
 .PHONY: reproduce test lint lab notebooks setup clean help

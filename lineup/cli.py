@@ -111,7 +111,8 @@ def _run_experiment(
     experiment = read_experiment(file)
     name = file.stem if variant is None else f"{file.stem}-{variant}"
     console = _console()
-    with Reporter(len(tasks(experiment, out / name, variant)), console) as reporter:
+    todo = tasks(experiment, out / name, variant)
+    with Reporter(len(todo), console) as reporter:
         rows = run_sweep(
             experiment,
             out / name,
@@ -122,13 +123,35 @@ def _run_experiment(
         )
     if experiment.task == "table2":
         table = tables.table2(rows)
-        written = tables.write_table(table, out, name)
+        folders = {str(task.settings["model"]): task.folder for task in todo}
+        written = tables.write_table(table, out, name) + _draw_chains(table, folders, out, name)
         console.print(tables.terminal_table(table))
     else:
         table = rows
         written = [write_whole(out / f"{name}.csv", rows.to_csv(index=False))]
     typer.echo(f"written: {', '.join(str(f) for f in written)}")
     _end(_shortfalls(table))
+
+
+def _draw_chains(table: pd.DataFrame, folders: dict[str, Path], out: Path, name: str) -> list[Path]:
+    """A sheet of all chains that are certified, and a page with the unfolding of the first."""
+    from . import draw
+    from .solid import Folding
+    from .storage import load
+
+    rows = table[table["failure"] == ""].to_dict("records")
+    if not rows:
+        return []
+    stored = [load(folders[row["model"]] / f"{row['model']}.folding.json") for row in rows]
+    chains = [folding for folding in stored if isinstance(folding, Folding)]
+    captions = [
+        f"{row['model'].replace('_', ' ')}\n{row['length']:,.0f} of {row['voxels']:,.0f} voxels"
+        for row in rows
+    ]
+    return [
+        draw.save(draw.contact_sheet(chains, captions), out / f"{name}.png"),
+        draw.save(draw.unfolding(chains[0]), out / f"{name}-unfolding.png"),
+    ]
 
 
 @app.command("run")
@@ -141,7 +164,7 @@ def run_models(
     from .pipeline import lineup
     from .storage import save
 
-    names = [Path(_known(source)).stem for source in models]
+    names = [Path(_readable(source)).stem for source in models]
     if len(set(names)) < len(names):
         raise ValueError(f"two models would be stored under one name: {', '.join(sorted(names))}")
     out.mkdir(parents=True, exist_ok=True)
@@ -154,6 +177,7 @@ def run_models(
     save(design, out)
     table = tables.table2(design.table)
     tables.write_table(table, out, "table")
+    _draw_chains(table, dict.fromkeys(names, out), out, "chains")
     console.print(tables.terminal_table(table))
     typer.echo(f"written: {out}")
     _end(_shortfalls(table))
@@ -275,6 +299,15 @@ def _known(source: str) -> str:
             raise FileNotFoundError(f"no file {source}")
         if source not in set(models()["name"]):
             raise ValueError(f"no file and no model {source!r}; 'lineup models' lists the models")
+    return source
+
+
+def _readable(source: str) -> str:
+    """A source as given, once it is clear that it is a model or a file with a good mesh."""
+    from .meshes import read_surface
+
+    if Path(_known(source)).is_file():
+        read_surface(Path(source))
     return source
 
 
