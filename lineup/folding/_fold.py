@@ -221,7 +221,7 @@ def _plan_piece(grid: Grid, fold: Fold, span: Span, piece: IntArray) -> IntArray
     level = np.empty(6 * len(piece), np.int32)
     level[0] = start
     n_level, goal = 1, -1
-    if span.outer == (fold.size[0] - 1) * span.end:  # it has no rod yet, so none to swing
+    if span.outer == (fold.size[0] - 1) * span.end:  # no rod yet: none to swing, its ray unproven
         parent[:6] = -1
         n_level = int(_clear_ray(grid, fold, span, piece[0], start, 1))
     for _ in range(MAX_SWINGS + 1):
