@@ -189,3 +189,80 @@ def two_matching(graph, colour):
     if not {"source", "sink"} <= set(network):
         return 0
     return nx.maximum_flow_value(network, "source", "sink")
+
+
+def lattice_ray(p, d, reach):
+    """Lattice points p, p + d, ... as a set of tuples; `reach` steps stand for infinity."""
+    (x, y, z), (dx, dy, dz) = p, grid.DIRECTIONS[d].tolist()
+    return {(x + t * dx, y + t * dy, z + t * dz) for t in range(reach + 1)}
+
+
+def lattice_quadrant(p, d, f, reach):
+    """Lattice points of the closed quadrant at p between directions d and f, as a set."""
+    return set().union(*(lattice_ray(q, f, reach) for q in lattice_ray(p, d, reach)))
+
+
+def rod_rule(voxels, old, new):
+    """Which infinite-rod rule forbids this step of a peel plan; "" if none does.
+
+    One end lets go of one joint or turns its rod by 90 degrees. A rod's whole ray holds no folded
+    joint and no point of the other rod's ray; neither does the whole quadrant of a swing, nor the
+    ray that the first rod of an end takes at the end of the chain.
+    """
+    points = [tuple(v) for v in np.asarray(voxels).tolist()]
+    last, old, new = len(points) - 1, [int(x) for x in old], [int(x) for x in new]
+    reach = int(np.ptp(points, axis=0).max()) + 1
+    ends = [end for end in range(2) if old[end::2] != new[end::2]]
+    if len(ends) != 1:
+        return f"{len(ends)} ends change"
+    (end,) = ends
+    joint, other, d, f = old[end], old[1 - end], old[2 + end], new[2 + end]
+
+    has_rod, other_has_rod = joint != last * end, other != last * (1 - end)
+    other_rod = lattice_ray(points[other], old[3 - end], reach) if other_has_rod else set()
+
+    def clear(region, state, k):
+        folded = set(points[state[0] : state[1] + 1]) - {points[k]}
+        return region.isdisjoint(folded | other_rod)
+
+    if new[end] == joint + (1, -1)[end] and d == f and new[0] < new[1]:
+        if not has_rod and not clear(lattice_ray(points[joint], d, reach), old, joint):
+            return f"the first ray of end {end} is blocked"
+        blocked = not clear(lattice_ray(points[new[end]], d, reach), new, new[end])
+        return f"the ray after a peel of end {end} is blocked" if blocked else ""
+    if new[end] == joint and d % 3 != f % 3 and has_rod:
+        blocked = not clear(lattice_quadrant(points[joint], d, f, reach), old, joint)
+        return f"the quadrant of a swing of end {end} is blocked" if blocked else ""
+    return "neither a peel nor a swing"
+
+
+def rod_fault(voxels, states):
+    """What breaks the infinite-rod rules in a peel plan, step by step; "" if nothing does."""
+    if states[0][0] != 0 or states[0][1] != len(voxels) - 1:
+        return "the first state has let go of joints"
+    for k, (old, new) in enumerate(itertools.pairwise(np.asarray(states).tolist())):
+        fault = rod_rule(voxels, old, new)
+        if fault:
+            return f"step {k}: {fault}"
+    return ""
+
+
+def swept_points(voxels, states, before, reach):
+    """Lattice points that the steps 0..before-1 of a plan sweep; a pivot is not swept itself.
+
+    The first ray of an end that ever lets go counts as swept from the outset.
+    """
+    points = [tuple(v) for v in np.asarray(voxels).tolist()]
+    last, states = len(points) - 1, np.asarray(states).tolist()
+    swept = set()
+    for end in range(2):
+        if states[-1][end] != last * end:
+            first = points[last * end]
+            swept |= lattice_ray(first, states[0][2 + end], reach) - {first}
+        for old, new in itertools.pairwise(states[: before + 1]):
+            pivot, d, f = points[new[end]], old[2 + end], new[2 + end]
+            if new[end] != old[end]:
+                swept |= lattice_ray(pivot, f, reach) - {pivot}
+            elif d != f:
+                swept |= lattice_quadrant(pivot, d, f, reach) - {pivot}
+    return swept
