@@ -170,10 +170,7 @@ def run_models(
     out.mkdir(parents=True, exist_ok=True)
     console = _console()
     with Reporter(len(models), console) as reporter:
-        design = lineup(models, blocks=blocks, seed=seed, progress=reporter)
-    for solid, folding in zip(design.models, design.foldings, strict=True):
-        save(solid, out / f"{solid.name}.solid.json")
-        save(folding, out / f"{solid.name}.folding.json")
+        design = lineup(models, blocks=blocks, seed=seed, folder=out, progress=reporter)
     save(design, out)
     table = tables.table2(design.table)
     tables.write_table(table, out, "table")

@@ -45,6 +45,7 @@ def lineup(
     blocks: int = 754,
     *,
     seed: int = 0,
+    folder: str | os.PathLike[str] | None = None,
     progress: Callable[[str, str], None] | None = None,
 ) -> Design:
     """Fold one chain of `blocks` building blocks into every model (Algorithm 1).
@@ -58,6 +59,8 @@ def lineup(
         Names of the catalogue, mesh files, meshes, or solids; a VoxelSolid is taken as it is.
     blocks : int
         Number of building blocks; each is two voxels.
+    folder : path, optional
+        Store each model as soon as it is done: ``NAME.solid.json`` and ``NAME.folding.json``.
     progress : function, optional
         Told (name, stage); the last stage of a model is "done" or "failed: reason".
 
@@ -91,6 +94,8 @@ def lineup(
             rows.append({"model": name, "blocks": blocks, "failure": str(error)})
             tell(name, f"failed: {error}")
             continue
+        if folder is not None:
+            _store(result, name, Path(folder))
         results.append(result)
         rows.append({"model": name, "blocks": blocks, **result.row})
         tell(name, "done")
@@ -108,9 +113,13 @@ def table2_task(
     """One row of Table 2; stores ``MODEL.solid.json`` and ``MODEL.folding.json`` in `folder`."""
     _check_blocks(blocks)
     result = _line_up(model, blocks, seed, progress)
-    save(result.solid, folder / f"{model}.solid.json")
-    save(result.folding, folder / f"{model}.folding.json")
+    _store(result, model, folder)
     return result.row
+
+
+def _store(result: _Result, name: str, folder: Path) -> None:
+    save(result.solid, folder / f"{name}.solid.json")
+    save(result.folding, folder / f"{name}.folding.json")
 
 
 def name_of(source: Source, number: int = 0) -> str:

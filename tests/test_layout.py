@@ -30,7 +30,8 @@ ORDER = [
         "judging",
     ),
     *("meshes", "implicit", "shapes", "sampling", "voxelization", "catalog"),
-    *("reeb", "planar", "linking", "layered", "bounds", "motion", "folding", "trimming"),
+    *("reeb", "planar", "linking", "layered", "bounds", "contraction"),
+    *("motion", "folding", "trimming"),
     *("storage", "verification", "pipeline", "_sources", "engines", "sweep", "tables", "draw"),
     *("_progress", "cli"),
 ]

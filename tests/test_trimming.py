@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from polycubes import polycubes
 
 import lineup as lu
+from lineup.contraction import contraction_pairs
 from lineup.grid import surface
-from lineup.trimming import contraction_pairs
 
 CUBE = lu.VoxelSolid(np.ones((6, 6, 6), bool))
 NO_SHRINKING = (Phase.explicit, Phase.reuse, Phase.generate)

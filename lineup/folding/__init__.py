@@ -8,6 +8,7 @@ from ..layered import layered_path
 from ..motion import unfold
 from ..solid import Folding, VoxelSolid
 from .growth import growth
+from .shorten import shortened_folding
 
 
 def fold(
@@ -60,10 +61,7 @@ def fold(
     folding = FOLD_METHODS[method](solid, seed, length, **options)
     if length is None or len(folding.path) <= length:
         return folding
-    from ..trimming import trim  # stands behind this module: it also shortens foldings
-
-    trimmed: Folding = trim([folding], length)[0]
-    return trimmed
+    return shortened_folding(folding, length)
 
 
 def _layered(solid: VoxelSolid, seed: int, length: int | None, *, starts: int = 4) -> Folding:

@@ -2,7 +2,7 @@
 
 A start path loses the pieces that keep it from being peeled straight; then voxels are won back
 by changes that each keep a valid plan. Every state on the way has one, so the search can stop
-anywhere; what it cannot promise is how many voxels it reaches. See PAPER.md, deviation 4.
+anywhere; what it cannot promise is how many voxels it reaches. See PAPER.md, deviation 5.
 """
 
 from collections.abc import Callable, Sequence

@@ -2,25 +2,32 @@
 
 import numpy as np
 
-from ..grid import BoolArray, IntArray
+from ..contraction import occupancy_of, shortened_path, with_steps_left_out
+from ..grid import IntArray, surface
+from ..motion import unfold
 from ..motion._chain import box_grid, cells_of
-from ..motion.plan import motion_of, states_of
-from ..solid import Motion
+from ..motion.plan import has_peel_plan, motion_of, states_of
+from ..solid import Folding
 from ._fold import new_fold
 from ._moves import contract_all
 
 
-def shorten(motion: Motion, keep: BoolArray, length: int) -> tuple[IntArray, Motion]:
-    """The voxels and the motion of a shorter path; `keep` (X, Y, Z) goes only if it must."""
-    shape = keep.shape
-    cells = cells_of(motion.start, shape)
-    grid = box_grid(shape)
-    fold = new_fold(len(grid.outside), cells, states_of(motion), len(cells))
-    contract_all(grid, fold, np.pad(keep, 1).ravel(), length)
+def shortened_folding(folding: Folding, length: int) -> Folding:
+    """A folding cut down to `length` voxels; surface voxels go only if they must.
+
+    A motion of peels and swings keeps a valid plan; any other path is unfolded anew.
+    """
+    if not has_peel_plan(folding.motion):
+        path = shortened_path(folding.path, length)
+        return Folding(path, unfold(path))
+    occupancy = occupancy_of(folding.path)
+    grid, cells = box_grid(occupancy.shape), cells_of(folding.path.voxels, occupancy.shape)
+    fold = new_fold(len(grid.outside), cells, states_of(folding.motion), len(cells))
+    contract_all(grid, fold, np.pad(surface(occupancy), 1).ravel(), length)
     contract_all(grid, fold, np.zeros(len(grid.outside), bool), length)
-    voxels = grid.xyz[fold.path[: fold.size[0]]]
-    states = fold.states[: fold.size[1]]
-    return voxels[:length], motion_of(voxels[:length], _without_end(states, length))
+    voxels = grid.xyz[fold.path[:length]]
+    motion = motion_of(voxels, _without_end(fold.states[: fold.size[1]], length))
+    return Folding(with_steps_left_out(folding.path, voxels), motion)
 
 
 def _without_end(states: IntArray, length: int) -> IntArray:
