@@ -1,0 +1,40 @@
+"""Figures as files."""
+
+import os
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+
+def save(figure: Figure, file: str | os.PathLike[str]) -> Path:
+    """Write a figure as PNG; equal figures give equal bytes, and no half-written file is left.
+
+    Returns
+    -------
+    Path
+        Of the file.
+
+    Raises
+    ------
+    ValueError
+        If the name of the file does not end in .png.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from lineup import draw
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     draw.save(Figure(), f"{folder}/empty.png").name
+    'empty.png'
+    """
+    path = Path(file)
+    if path.suffix.lower() != ".png":
+        raise ValueError(f"a picture is written as .png, got {path.name!r}")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    half = path.with_name(f"{path.name}.{os.getpid()}.tmp")
+    try:
+        figure.savefig(half, format="png", metadata={"Software": None})
+        os.replace(half, path)
+    finally:
+        half.unlink(missing_ok=True)
+    return path
