@@ -5,6 +5,7 @@ Each function returns a matplotlib figure; `save` writes it.
 
 from .files import save
 from .moments import unfolding
+from .plans import layers, reeb
 from .scenes import chain, contact_sheet, solid
 
-__all__ = ["chain", "contact_sheet", "save", "solid", "unfolding"]
+__all__ = ["chain", "contact_sheet", "layers", "reeb", "save", "solid", "unfolding"]

@@ -41,7 +41,7 @@ def picture(
     axes = figure.add_axes(place)
     axes.axis("off")
     width, height = np.rint(axes.get_window_extent().size).astype(int).tolist()
-    axes.imshow(rendered(bodies, view, width, height), aspect="auto", interpolation="none")
+    axes.imshow(rendered(bodies, view, width, height), aspect="auto", interpolation="auto")
     return axes
 
 

@@ -47,10 +47,13 @@ def renderer() -> str:
 
 def rendered(bodies: Sequence[Body], view: View, width: int, height: int) -> Pixels:
     """A picture of `bodies` on white, with the shadow below them: (height, width, 3) uint8."""
+    shown = [body for body in (b.inside(view, width / height) for b in bodies) if len(body)]
+    if not shown:
+        return np.full((height, width, 3), 255, np.uint8)
     draw = _by_vtk if renderer() == "vtk" else _by_matplotlib
-    rgba = draw(bodies, view, width, height).astype(np.float64)
+    rgba = draw(shown, view, width, height).astype(np.float64)
     opacity = rgba[..., 3:] / 255
-    ground = _shadow(bodies, view, width, height)[..., None]
+    ground = _shadow(shown, view, width, height)[..., None]
     picture: Pixels = np.rint(rgba[..., :3] * opacity + ground * (1 - opacity)).astype(np.uint8)
     return picture
 
@@ -63,7 +66,7 @@ def _by_vtk(bodies: Sequence[Body], view: View, width: int, height: int) -> Pixe
         off_screen=True, window_size=[s * width, s * height], lighting="none"
     )
     plotter.render_window.SetMultiSamples(0)
-    for body in filter(len, bodies):
+    for body in bodies:
         for mesh in _meshes(body):
             plotter.add_mesh(
                 mesh,
@@ -75,8 +78,8 @@ def _by_vtk(bodies: Sequence[Body], view: View, width: int, height: int) -> Pixe
                 specular=0.12,
                 specular_power=20,
             )
-    _light(plotter, view)
-    plotter.enable_ssao(radius=3.0, bias=0.05, kernel_size=24)
+    _set_up(plotter, view, np.concatenate([body.points for body in bodies]))
+    plotter.enable_ssao(radius=2.0, bias=0.15, kernel_size=24)
     plotter.render()  # without it the picture may be of the scene before
     rgba = plotter.screenshot(return_img=True, transparent_background=True)
     plotter.close()
@@ -106,12 +109,13 @@ def _meshes(body: Body) -> Iterator[Any]:
         yield points.glyph(orient="bar", scale=False, geom=rod)
 
 
-def _light(plotter: Any, view: View) -> None:
-    """Camera and two lights, which hang on the view, so that all pictures are lit alike."""
+def _set_up(plotter: Any, view: View, points: FloatArray) -> None:
+    """Camera and two lights, which turn with the view, so that all pictures are lit alike."""
     import pyvista
 
     right, up, back = view.axes
-    far = 4 * view.half_height + 1000.0
+    # As near as can be: VTK stores positions for its shadows as 16 bit floats.
+    far = float(view.seen(points)[:, 2].max()) + 2
     for direction, intensity in ((back - right + 1.5 * up, 1.0), (back + right, 0.45)):
         light = pyvista.Light(
             position=tuple(view.centre + far * direction),
@@ -175,7 +179,7 @@ def _by_matplotlib(bodies: Sequence[Body], view: View, width: int, height: int) 
     axes.set_xlim(-half_width, half_width)
     axes.set_ylim(-view.half_height, view.half_height)
     points_a_voxel = 72 * height / 100 / (2 * view.half_height)
-    for body in filter(len, bodies):
+    for body in bodies:
         if isinstance(body, Cubes):
             _paint_cubes(axes, body, view)
         else:

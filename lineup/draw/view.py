@@ -8,7 +8,7 @@ import matplotlib
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..grid import FloatArray
+from ..grid import BoolArray, FloatArray
 
 Pixels = NDArray[np.uint8]
 
@@ -31,6 +31,11 @@ class Capsules:
     def points(self) -> FloatArray:
         return np.concatenate([self.start, self.stop])
 
+    def inside(self, view: View, aspect: float) -> Capsules:
+        """The rods that a view of this aspect may have in its picture."""
+        kept = view.holds((self.start + self.stop) / 2, aspect)
+        return Capsules(self.start[kept], self.stop[kept], self.rgb[kept], self.radius[kept])
+
 
 @dataclass(frozen=True)
 class Cubes:
@@ -46,6 +51,11 @@ class Cubes:
     @property
     def points(self) -> FloatArray:
         return self.centre
+
+    def inside(self, view: View, aspect: float) -> Cubes:
+        """The cubes that a view of this aspect may have in its picture."""
+        kept = view.holds(self.centre, aspect)
+        return Cubes(self.centre[kept], self.rgb[kept], self.edge)
 
 
 Body = Capsules | Cubes
@@ -70,6 +80,13 @@ class View:
         """(n, 3) points as the camera has them: right, up and towards it, from the centre."""
         seen: FloatArray = (np.asarray(points, float) - self.centre) @ self.axes.T
         return seen
+
+    def holds(self, points: FloatArray, aspect: float) -> BoolArray:
+        """Which of (n, 3) points are in the picture or at most a voxel beside it."""
+        half = self.half_height * np.array([aspect, 1.0]) + 1
+        x, y = (np.abs(self.seen(points)[:, :2]) < half).T
+        held: BoolArray = x & y
+        return held
 
     def widened(self, share: float) -> View:
         """The view in which what fills this one fills a share of the height, a little low."""
