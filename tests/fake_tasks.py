@@ -5,6 +5,10 @@ import signal
 import time
 from pathlib import Path
 
+import numpy as np
+
+import lineup as lu
+
 CALLS = "LINEUP_TEST_CALLS"
 """Environment variable naming the file that every call is noted in."""
 
@@ -33,7 +37,10 @@ def table2_task(model: str, blocks: int, seed: int, *, folder: Path, progress) -
     progress("fold")
     if model == "cannon":
         raise ValueError("no such mesh")
+    path = lu.VoxelPath(np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]))
+    lu.save(lu.Folding(path, lu.unfold(path)), folder / f"{model}.folding.json")
     return {
+        "voxels": 4,
         "source": "procedural",
         "length": 2 * blocks - 2 * (model == "duck"),
         "straight": True,

@@ -87,7 +87,8 @@ def test_table2_quick_runs_the_experiment_file(lineup, fake, tmp_path):
     assert "3 of 5" in out
     table = pd.read_csv(tmp_path / "results" / "table2-quick.csv")
     assert table.model.tolist() == ["bunny", "decocube", "cannon", "two_holed_torus", "duck"]
-    assert (tmp_path / "results" / "table2-quick" / "bunny-200" / "row.json").is_file()
+    for written in ("table2-quick/bunny-200/row.json", "table2-quick.png"):
+        assert (tmp_path / "results" / written).is_file()
     again = lineup("sweep", cli.EXPERIMENTS / "table2.yaml", "--variant=quick", "--engine=serial")
     assert again[0] == 1
     assert "bunny-200: kept" in again[1]
@@ -181,7 +182,7 @@ def test_models(lineup):
 BAD_USE = {
     "unknown command": (["fold"], "No such command"),
     "unknown option": (["table2", "--fast"], "No such option"),
-    "no number": (["run", "bunny", "--blocks", "many"], "not a valid int"),
+    "no number": (["run", "bunny", "--blocks", "many"], "valid int"),
     "missing argument": (["verify"], "Missing argument"),
     "missing mesh": (["voxelize", "gone.obj"], "no file gone.obj"),
     "missing folder": (["verify", "gone"], "no file or folder gone"),
@@ -200,6 +201,8 @@ BAD_USE = {
     "unknown method": (["path", "cube.solid.json", "--method", "magic"], "'magic'"),
     "malformed result": (["verify", "text.txt"], "text.txt: Invalid JSON"),
     "another kind": (["unfold", "cube.solid.json"], "holds a VoxelSolid, and a path is needed"),
+    "empty mesh to run": (["run", "duck", "empty.obj"], "empty.obj"),
+    "nan in a mesh to run": (["run", "nan.obj"], "nan.obj"),
     "negative blocks": (["run", "duck", "--blocks", "-3"], "blocks"),
     "one name twice": (["run", "duck", "duck"], "two models would be stored under one name"),
     "no direction": (["voxelize", "duck", "--up", "high"], "high"),
@@ -210,8 +213,6 @@ BAD_USE = {
 @pytest.mark.parametrize("fault", BAD_USE)
 def test_bad_use_is_one_line_and_exit_code_2(lineup, fake, tmp_path, fault):
     args, message = BAD_USE[fault]
-    if args[0] == "run":
-        pytest.importorskip("lineup.pipeline")
     (tmp_path / "nothing").mkdir()
     (tmp_path / "text.txt").write_text("hello")
     (tmp_path / "text.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
