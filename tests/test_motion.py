@@ -21,6 +21,16 @@ from lineup.motion import _chain, _search, plan
 LOCKED = "DWNEEUESUWWSWDEDENU"
 STUCK = [LOCKED, "NEESSWUWNNWDDEESU", "SEDEUNUNWDDWSWUUEED", "USDWNUNEDDEEUSDSUWDNU"]
 
+# Only swings, up to a dozen, get both ends out.
+WINDING = [
+    "DWUSUNESDDW",
+    "SUEDDWNNUES",
+    "EENWDESSWNWNUUSWNDDSSUEEEUNNWSSWW",
+    "UEESDNWNDWWSSUEUEDDWNEENUUWWDWSUN",
+    "WSDNEEUNESDNWWWUEUWSESEDWDEEUUNWNE",
+    "DEEUNDWWWSUSUENWNDEEUSSDWDEEUUNN",
+]
+
 
 def walk(word):
     """The voxels of a path spelled in the letters of `grid.LETTERS`."""
@@ -277,6 +287,15 @@ def test_search_leaves_no_more_folded_than_it_must(word):
     assert plan.left_folded(states) == least_folded(voxels) > 1
     assert rod_fault(voxels, states) == ""
     check_peeled(voxels, plan.motion_of(voxels, states))
+
+
+@pytest.mark.parametrize("word", WINDING)
+@pytest.mark.parametrize("seed", range(5))
+def test_search_finds_the_swings_that_a_path_needs(word, seed):
+    states = plan.peel_plan(*plan.path_grid(walk(word)), np.random.default_rng(seed))
+    assert plan.left_folded(states) == 1
+    assert (np.diff(states[:, 2:], axis=0) != 0).any()
+    assert rod_fault(walk(word), states) == ""
 
 
 @given(seeds, st.integers(2, 60), st.sampled_from([0.02, 0.5, 0.98]))
