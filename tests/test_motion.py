@@ -253,6 +253,22 @@ def test_the_kernels_allow_exactly_the_steps_that_the_rules_do(seed, n):
         state = ways[rng.integers(len(ways))]
 
 
+def test_a_state_is_entered_once_and_all_its_steps_are():
+    voxels = walk("EENNWWSU")
+    box, cells = plan.path_grid(voxels)
+    chain = _chain.link(box, cells)
+    for seed, state in itertools.product(range(5), [[3, 6, 5, 2], [2, 5, 5, 5], [1, 8, 4, 0]]):
+        frontier = _search._open(len(voxels), 200)
+        assert _search._enter(frontier, np.array(state, np.int32), -1)
+        _search._enter_peels(box, chain, frontier, 0, bool(seed % 2))
+        for _ in range(2):
+            _search._enter_swings(box, chain, frontier, 0, np.random.default_rng(seed))
+        entered = frontier.state[1 : frontier.size[0]].tolist()
+        steps = [step for step in steps_from(len(voxels), state) if 0 <= step[0] < step[1]]
+        assert sorted(entered) == sorted(s for s in steps if not rod_rule(voxels, state, s))
+        assert len(entered) > 1
+
+
 def least_folded(voxels):
     """The fewest bars any plan leaves folded, by trying all steps from all starts."""
     todo = starts_of(len(voxels))
