@@ -28,7 +28,9 @@ lab: $(STAMP)  ## JupyterLab on the first notebook
 	$(BIN)/jupyter lab notebooks/00_overview.ipynb
 
 notebooks: $(STAMP)  ## Execute every notebook again from its .py half
-	$(BIN)/jupytext --quiet --to ipynb --set-formats ipynb,py:percent --set-kernel python3 --execute notebooks/*.py
+	$(BIN)/jupytext --quiet --to ipynb --update --set-formats ipynb,py:percent --set-kernel python3 notebooks/*.py
+	env -u LINEUP_MODELS $(BIN)/jupyter nbconvert --log-level WARN --to notebook --inplace --execute \
+	  --ExecutePreprocessor.record_timing=False notebooks/*.ipynb
 
 setup: $(STAMP)  ## The virtual environment alone
 

@@ -114,8 +114,9 @@ def _set_up(plotter: Any, view: View, points: FloatArray) -> None:
     import pyvista
 
     right, up, back = view.axes
-    # As near as can be: VTK stores positions for its shadows as 16 bit floats.
-    far = float(view.seen(points)[:, 2].max()) + 2
+    # Near, for VTK stores positions for its shadows as 16 bit floats; but not so near that the
+    # background, which counts as being at the camera, throws shadows.
+    far = float(view.seen(points)[:, 2].max()) + 20
     for direction, intensity in ((back - right + 1.5 * up, 1.0), (back + right, 0.45)):
         light = pyvista.Light(
             position=tuple(view.centre + far * direction),
@@ -126,7 +127,7 @@ def _set_up(plotter: Any, view: View, points: FloatArray) -> None:
         light.positional = False
         plotter.add_light(light)
     plotter.camera.position = tuple(view.centre + far * back)
-    plotter.camera.focal_point = tuple(view.centre)
+    plotter.camera.focal_point = tuple(view.centre + (far - 1) * back)
     plotter.camera.up = (0, 0, 1)
     plotter.enable_parallel_projection()
     plotter.camera.parallel_scale = view.half_height
@@ -146,8 +147,10 @@ def _shrunk(rgba: Pixels, s: int) -> Pixels:
 
 def _shadow(bodies: Sequence[Body], view: View, width: int, height: int) -> FloatArray:
     """Grey values (height, width) of a white floor under the bodies, darker where they stand."""
-    points = np.concatenate([body.points for body in bodies])
     right, up, back = view.axes
+    if back[2] < 0.05:  # no floor is seen from its side or from below
+        return np.full((height, width), 255.0)
+    points = np.concatenate([body.points for body in bodies])
     # The floor point of a pixel: the point (a, b) of the picture plane, and on along the view.
     unit = 2 * view.half_height / height
     a = (np.arange(width) + 0.5 - width / 2) * unit

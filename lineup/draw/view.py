@@ -108,13 +108,20 @@ def view_of(
     azimuth_deg : float, optional
         From the x axis towards y; by default, so that the wider of the sides x and y is seen.
     elevation_deg : float
-        Above the floor.
+        Above the floor, from -89 to 89.
+
+    Raises
+    ------
+    ValueError
+        If the camera would look straight down or up.
 
     Examples
     --------
     >>> view_of([[0, 0, 0], [0, 0, 8]], elevation_deg=0).half_height
     5.0
     """
+    if not -89 <= elevation_deg <= 89:
+        raise ValueError(f"elevation_deg must be from -89 to 89, got {elevation_deg}")
     wide = np.ptp(np.asarray(points, float), axis=0)
     if azimuth_deg is None:
         azimuth_deg = -60.0 if wide[0] >= wide[1] else -30.0
