@@ -121,18 +121,23 @@ def test_a_first_rod_may_only_grow_where_nothing_is_in_its_way(seed):
         grown.check(solid)
 
 
-@pytest.mark.parametrize("end", [0, 1])
-def test_the_last_bar_gives_way_where_one_end_did_all_the_work(end):
-    solid = block(3, 1, 2)
-    voxels = np.array([(0, 0, 0), (1, 0, 0), (2, 0, 0)])
-    down, up = 5, 2
-    plans = [
-        [(0, 2, 3, 4), (1, 2, 3, 4)],
-        [(0, 2, 4, 0), (0, 1, 4, 0)],
-    ]
-    plan = np.array(plans[end], np.int32)
-    plan[:, 3 - end] = (up, down)[end]  # the idle end's direction means nothing yet
-    grown = Grown(solid, voxels, 0, plan)
+EAST, UP, WEST = 0, 2, 3
+
+
+@pytest.mark.parametrize(
+    ("states", "hole"),
+    [
+        ([(0, 2, WEST, UP), (1, 2, WEST, UP)], (0, 0, 1)),
+        ([(0, 2, UP, EAST), (0, 1, UP, EAST)], (2, 0, 1)),
+    ],
+    ids=["front", "back"],
+)
+def test_the_last_bar_is_led_past_by_the_end_that_has_a_rod(states, hole):
+    # The idle end's direction means nothing yet: here it points at a hole to be filled.
+    occupancy = np.ones((3, 1, 2), bool)
+    occupancy[hole] = False
+    solid, bars = lu.VoxelSolid(occupancy), np.array([(0, 0, 0), (1, 0, 0), (2, 0, 0)])
+    grown = Grown(solid, bars, 0, np.array(states, np.int32))
     _moves.fill(grown.grid, grown.body, grown.fold, 200, _fold.NEVER, grown.rng)
     grown.check(solid)
     assert len(grown.voxels) == 5
