@@ -214,7 +214,8 @@ class Design:
     certificates : tuple of Certificate
         The judge's verdict on each motion.
     table : DataFrame
-        One row per model.
+        One row for each model asked for; one that failed has its reason in ``failure``, and is in
+        no other part.
     """
 
     models: tuple[VoxelSolid, ...]
@@ -229,5 +230,10 @@ def _int_rows(value: Any, name: str, width: int) -> grid.IntArray:
         raise ValueError(
             f"{name} must be an integer array of shape (n, {width}), "
             f"got {array.dtype} of shape {array.shape}"
+        )
+    bounds = np.iinfo(np.int32)
+    if array.size and not bounds.min <= array.min() <= array.max() <= bounds.max:
+        raise ValueError(
+            f"{name} must be from {bounds.min} to {bounds.max}, got {array.min()} to {array.max()}"
         )
     return array.astype(np.int32)

@@ -313,8 +313,10 @@ class _Design(_Document):
         )
 
     def record(self) -> Design:
-        if not len(self.models) == len(self.foldings) == len(self.certificates) == len(self.rows):
-            raise ValueError("models, foldings, certificates and rows differ in number")
+        if not len(self.models) == len(self.foldings) == len(self.certificates) <= len(self.rows):
+            raise ValueError(
+                "models, foldings and certificates differ in number, or are more than the rows"
+            )
         if any(len(row) != len(self.columns) for row in self.rows):
             raise ValueError(f"a row has not {len(self.columns)} cells, one for each column")
         return Design(

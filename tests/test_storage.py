@@ -1,5 +1,6 @@
 """What is saved loads back exactly, and nothing malformed is let in."""
 
+import dataclasses
 import json
 
 import numpy as np
@@ -110,6 +111,20 @@ def test_design_round_trip_leaves_out_timings(tmp_path):
     assert same(design.certificates, stored.certificates)
     (tmp_path / "obj.json").unlink()
     round_trip(stored, tmp_path)
+
+
+def test_a_design_says_of_failed_models_why(tmp_path):
+    design = a_design()
+    table = pd.DataFrame({"model": ["gone", "square"], "failure": ["no such mesh", None]})
+    stored = lu.load(lu.save(dataclasses.replace(design, table=table), tmp_path))
+    assert stored.table["failure"].tolist() == ["no such mesh", None]
+    with pytest.raises(ValueError, match="are more than the rows"):
+        lu.load(lu.save(dataclasses.replace(design, table=table[:0]), tmp_path))
+
+
+def test_positions_that_do_not_fit_are_refused():
+    with pytest.raises(ValueError, match=r"voxels must be from -2147483648 to .*1099511627776"):
+        lu.VoxelPath(np.array([(2**40, 0, 0)]))
 
 
 def test_a_folder_holds_one_design(tmp_path):
