@@ -316,6 +316,9 @@ def _path_fault(path: VoxelPath, solid: VoxelSolid) -> tuple[str, int]:
 def _inside_fault(path: VoxelPath, solid: VoxelSolid) -> tuple[str, int]:
     if path.refinement < 1:
         return f"refinement {path.refinement} is not a positive number", -1
+    n_refined, n_told = solid.size * path.refinement**3, len(path) + len(path.dropped)
+    if path.refinement > 1 and n_refined != n_told:  # before a grid of that many is made
+        return f"the refined solid has {n_refined} voxels, path and dropped have {n_told}", -1
     occupancy = _refined(solid, path.refinement)
     voxels = path.voxels
     in_range = np.logical_and.reduce((voxels >= 0) & (voxels < occupancy.shape), axis=1)
