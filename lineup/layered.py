@@ -7,11 +7,11 @@ MSP, by tens of percent where the solid has handles, so several of both are trie
 from __future__ import annotations
 
 from collections.abc import Callable
-from inspect import Parameter, signature
 from typing import Any
 
 import numpy as np
 
+from ._options import checked
 from .linking import Effort, assembled, layers, linked, promising_plan
 from .solid import VoxelPath, VoxelSolid
 
@@ -49,13 +49,7 @@ def layered_path(
     >>> len(path), path.visits[:, 2:].tolist()
     (24, [[1, 0], [0, 0]])
     """
-    if method not in PATH_METHODS:
-        raise ValueError(f"unknown path method {method!r}; known: {sorted(PATH_METHODS)}")
-    parameters = signature(PATH_METHODS[method]).parameters.values()
-    known = sorted(p.name for p in parameters if p.kind is Parameter.KEYWORD_ONLY)
-    unknown = sorted(set(options) - set(known))
-    if unknown:
-        raise ValueError(f"method {method!r} has no option {unknown[0]!r}; known: {known}")
+    checked(PATH_METHODS, method, options, "path method")
     if solid.size < 2:
         raise ValueError("a path needs at least two voxels, the solid has 1")
     return PATH_METHODS[method](solid, seed, **options)
