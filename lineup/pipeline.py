@@ -10,11 +10,12 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from . import grid
 from .bounds import path_bound
-from .catalog import model, models
+from .catalog import model
 from .folding import fold
 from .judging import certify, certify_path
 from .layered import layered_paths
@@ -60,7 +61,8 @@ def lineup(
     blocks : int
         Number of building blocks; each is two voxels.
     folder : path, optional
-        Store each model as soon as it is done: ``NAME.solid.json`` and ``NAME.folding.json``.
+        Store each model as soon as it is done: ``NAME.solid.json`` and ``NAME.folding.json``. Made
+        if it does not exist.
     progress : function, optional
         Told (name, stage); the last stage of a model is "done" or "failed: reason".
 
@@ -72,7 +74,8 @@ def lineup(
     Raises
     ------
     ValueError
-        If there are no models, or fewer than two blocks.
+        If there are no models, two that would be stored under one name, fewer than two blocks, or
+        the seed is negative.
 
     Examples
     --------
@@ -81,13 +84,16 @@ def lineup(
     >>> [len(folding.path) for folding in design.foldings], [c.ok for c in design.certificates]
     ([80, 80], [True, True])
     """
-    if len(models) == 0:
-        raise ValueError("there are no models; give at least one name, file, mesh or solid")
-    _check_blocks(blocks)
+    names = _names(models)
+    _check_settings(blocks, seed)
+    if folder is not None:
+        if len(set(names)) < len(names):
+            listed = ", ".join(sorted(names))
+            raise ValueError(f"two models would be stored under one name: {listed}")
+        Path(folder).mkdir(parents=True, exist_ok=True)
     tell = progress or (lambda name, stage: None)
     results, rows = [], []
-    for number, source in enumerate(models):
-        name = name_of(source, number)
+    for name, source in zip(names, models, strict=True):
         try:
             result = _line_up(source, blocks, seed, partial(tell, name))
         except (ValueError, OSError) as error:
@@ -111,7 +117,7 @@ def table2_task(
     model: str, blocks: int, seed: int, *, folder: Path, progress: Callable[[str], None]
 ) -> dict[str, Any]:
     """One row of Table 2; stores ``MODEL.solid.json`` and ``MODEL.folding.json`` in `folder`."""
-    _check_blocks(blocks)
+    _check_settings(blocks, seed)
     result = _line_up(model, blocks, seed, progress)
     _store(result, model, folder)
     return result.row
@@ -122,16 +128,24 @@ def _store(result: _Result, name: str, folder: Path) -> None:
     save(result.folding, folder / f"{name}.folding.json")
 
 
-def name_of(source: Source, number: int = 0) -> str:
-    """What a source is called in tables and file names."""
-    if isinstance(source, str | os.PathLike):
-        return Path(source).stem
-    return str(getattr(source, "name", "")) or f"model{number + 1}"
+def _names(models: Sequence[Source]) -> list[str]:
+    """What each source is called in tables and file names."""
+    if isinstance(models, str | os.PathLike):
+        raise ValueError(f"models must be a list, got {models!r} alone; put it in brackets")
+    if len(models) == 0:
+        raise ValueError("there are no models; give at least one name, file, mesh or solid")
+    return [
+        Path(source).stem
+        if isinstance(source, str | os.PathLike)
+        else str(getattr(source, "name", "")) or f"model{number}"
+        for number, source in enumerate(models, start=1)
+    ]
 
 
-def _check_blocks(blocks: int) -> None:
-    if blocks < MIN_BLOCKS:
-        raise ValueError(f"blocks must be at least {MIN_BLOCKS}, got {blocks}")
+def _check_settings(blocks: int, seed: int) -> None:
+    for name, value, least in (("blocks", blocks, MIN_BLOCKS), ("seed", seed, 0)):
+        if not isinstance(value, int | np.integer) or value < least:
+            raise ValueError(f"{name} must be an integer of at least {least}, got {value!r}")
 
 
 def _line_up(source: Source, blocks: int, seed: int, tell: Callable[[str], None]) -> _Result:
@@ -170,7 +184,7 @@ def _line_up(source: Source, blocks: int, seed: int, tell: Callable[[str], None]
 def _solid(source: Source, voxels: int) -> VoxelSolid:
     if isinstance(source, VoxelSolid):
         return source
-    if isinstance(source, str) and source in set(models()["name"]):
+    if isinstance(source, str) and not Path(source).suffix:  # a mesh file has an ending
         return model(source, voxels=voxels)
     return voxelize(source, voxels=voxels)
 

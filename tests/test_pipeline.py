@@ -69,6 +69,31 @@ def test_equal_seeds_give_equal_bytes(tmp_path):
 def test_bad_use_is_refused():
     with pytest.raises(ValueError, match="there are no models"):
         lu.lineup([])
-    for blocks in (-3, 0, 1):
-        with pytest.raises(ValueError, match=f"blocks must be at least 2, got {blocks}"):
+    with pytest.raises(ValueError, match="models must be a list, got 'duck' alone"):
+        lu.lineup("duck")
+    for blocks in (-3, 0, 1, 2.5, "many"):
+        with pytest.raises(ValueError, match="blocks must be an integer of at least 2, got"):
             lu.lineup(["duck"], blocks=blocks)
+    with pytest.raises(ValueError, match="seed must be an integer of at least 0, got -1"):
+        lu.lineup(["duck"], seed=-1)
+
+
+def test_two_models_of_one_name_are_not_stored_over_each_other(tmp_path):
+    with pytest.raises(ValueError, match="under one name: duck, duck"):
+        lu.lineup(["duck", "duck"], blocks=20, folder=tmp_path / "new")
+    assert not (tmp_path / "new").exists()
+
+
+def test_a_name_that_is_no_model_is_told_the_near_ones():
+    assert lu.lineup(["dukc"], blocks=20).table["failure"][0] == (
+        "unknown model 'dukc'; did you mean duck?"
+    )
+
+
+def test_a_design_with_a_failed_model_is_stored_and_loads(tmp_path):
+    dice = lu.VoxelSolid(np.ones((2, 2, 2), bool), name="dice")
+    design = lu.lineup(["mug", dice], blocks=20, folder=tmp_path / "new")
+    stored = lu.load(lu.save(design, tmp_path / "new"))
+    assert [solid.name for solid in stored.models] == ["mug"]
+    assert stored.table["model"].tolist() == ["mug", "dice"]
+    assert stored.table["failure"][1] == design.table["failure"][1]
