@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
@@ -34,7 +35,7 @@ Source = Annotated[
 Out = Annotated[Path, typer.Option(help="Folder to write into; made if it does not exist.")]
 Seed = Annotated[int, typer.Option(help="Equal seeds give equal results.")]
 Blocks = Annotated[int, typer.Option(help="Blocks of the chain; each is two voxels.")]
-Voxels = Annotated[int, typer.Option(help="Number of voxels to aim at.")]
+Voxels = Annotated[int, typer.Option(help="Voxels to aim at; a stored solid keeps its own.")]
 Workers = Annotated[
     int | None, typer.Option(help="Processes at a time; as many as there are cores if not given.")
 ]
@@ -165,9 +166,6 @@ def run_models(
     from .storage import save
 
     names = [Path(_readable(source)).stem for source in models]
-    if len(set(names)) < len(names):
-        raise ValueError(f"two models would be stored under one name: {', '.join(sorted(names))}")
-    out.mkdir(parents=True, exist_ok=True)
     console = _console()
     with Reporter(len(models), console) as reporter:
         design = lineup(models, blocks=blocks, seed=seed, folder=out, progress=reporter)
@@ -273,6 +271,7 @@ def unfold(
     from .judging import certify
     from .solid import Folding, VoxelPath
     from .storage import load, save
+    from .verification import stored_name
 
     stored = load(file)
     if not isinstance(stored, VoxelPath):
@@ -280,7 +279,7 @@ def unfold(
     found = motion.unfold(stored, method=method, seed=seed)
     verdict = certify(found)
     out.mkdir(parents=True, exist_ok=True)
-    name = file.name.split(".")[0]
+    name = stored_name(file)
     written = save(Folding(stored, found), out / f"{name}.folding.json")
     typer.echo(f"{len(found)} moves, {_told(verdict)}")
     typer.echo(f"written: {written}")
@@ -313,6 +312,7 @@ def _solid(source: str, voxels: int, up: str | None = None) -> VoxelSolid:
     from . import catalog, voxelization
     from .solid import VoxelSolid
     from .storage import load
+    from .verification import stored_name
 
     if not Path(_known(source)).is_file():
         return catalog.model(source, voxels, up)
@@ -321,7 +321,9 @@ def _solid(source: str, voxels: int, up: str | None = None) -> VoxelSolid:
     stored = load(source)
     if not isinstance(stored, VoxelSolid):
         raise ValueError(f"{source} holds a {type(stored).__name__}, and a solid is needed")
-    return stored
+    if up is not None:
+        raise ValueError(f"{source} is made of voxels already, and cannot be turned by --up {up}")
+    return stored if stored.name else replace(stored, name=stored_name(Path(source)))
 
 
 def _told(verdict: Certificate) -> str:

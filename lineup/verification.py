@@ -11,7 +11,7 @@ from .judging import certify, certify_path
 from .solid import Certificate, Design, Folding, Motion, VoxelPath, VoxelSolid
 from .storage import load
 
-KINDS = ("solid", "path", "motion", "folding", "design")
+ENDINGS = tuple(f".{kind}.json" for kind in ("solid", "path", "motion", "folding", "design"))
 
 
 def stored_files(place: Path) -> list[Path]:
@@ -26,12 +26,17 @@ def stored_files(place: Path) -> list[Path]:
         return [place]
     if not place.is_dir():
         raise FileNotFoundError(f"no file or folder {place}")
-    endings = tuple(f".{kind}.json" for kind in KINDS)
-    found = [f for f in place.rglob("*.json") if f.name.endswith(endings)]
+    found = [f for f in place.rglob("*.json") if f.name.endswith(ENDINGS)]
     found += place.rglob("design.json")
     if not found:
         raise FileNotFoundError(f"no stored result (NAME.KIND.json or design.json) in {place}")
     return sorted(found)
+
+
+def stored_name(file: Path) -> str:
+    """NAME of a file NAME.KIND.json; NAME may have dots. The stem of any other file."""
+    ending = next((ending for ending in ENDINGS if file.name.endswith(ending)), file.suffix)
+    return file.name.removesuffix(ending)
 
 
 def verdicts(
@@ -48,7 +53,7 @@ def verdicts(
         As `load`.
     """
     stored = load(file)
-    beside = file.with_name(f"{file.name.split('.')[0]}.solid.json")
+    beside = file.with_name(f"{stored_name(file)}.solid.json")
     if isinstance(stored, VoxelSolid):
         # The record refuses whatever is not a solid, so one that loads is one.
         yield "solid", Certificate(True, "certified")
@@ -84,6 +89,8 @@ def _own_solid(path: VoxelPath) -> VoxelSolid:
 
 def _common_length(design: Design) -> Certificate:
     lengths = sorted({len(folding.path) for folding in design.foldings})
+    if not lengths:
+        return Certificate(False, "no model was folded")
     if len(lengths) > 1:
         return Certificate(False, f"the foldings differ in length: {lengths}")
     return Certificate(True, "certified")

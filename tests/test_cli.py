@@ -150,6 +150,24 @@ def test_verify_judges_a_path_against_the_solid_beside_it(lineup, tmp_path):
     assert "c.path.json path: " in err
 
 
+def test_a_name_with_dots_keeps_them(lineup, tmp_path):
+    lu.save(lu.VoxelSolid(np.ones((2, 3, 1), bool)), tmp_path / "c.v2.solid.json")
+    assert lineup("path", "c.v2.solid.json")[0] == 0
+    assert lineup("unfold", "c.v2.path.json")[0] == 0
+    assert lineup("verify", "c.v2.folding.json")[0] == 0
+    lu.save(lu.VoxelSolid(np.ones((2, 4, 1), bool)), tmp_path / "c.v2.solid.json")
+    code, _, err = lineup("verify", "c.v2.folding.json")
+    assert code == 1
+    assert "c.v2.folding.json path: " in err
+
+
+def test_verify_a_design_without_models(lineup, tmp_path):
+    lu.save(lu.Design((), (), (), pd.DataFrame({"model": ["gone"]})), tmp_path)
+    code, _, err = lineup("verify", tmp_path)
+    assert code == 1
+    assert "no model was folded" in err
+
+
 def test_verify_a_design(lineup, tmp_path):
     solid = lu.VoxelSolid(np.array([[1, 0, 0], [1, 1, 1]], bool)[:, :, None], name="corner")
     verdict = lu.certify(a_folding().motion)
@@ -206,6 +224,8 @@ BAD_USE = {
     "negative blocks": (["run", "duck", "--blocks", "-3"], "blocks"),
     "one name twice": (["run", "duck", "duck"], "two models would be stored under one name"),
     "no direction": (["voxelize", "duck", "--up", "high"], "high"),
+    "voxels turned": (["voxelize", "cube.solid.json", "--up", "+x"], "cannot be turned"),
+    "negative seed": (["run", "duck", "--seed", "-1"], "seed must be an integer of at least 0"),
     "negative diameter": (["verify", "c.folding.json", "--diameter", "-1"], "diameter"),
 }  # fmt: skip
 
