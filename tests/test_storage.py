@@ -115,9 +115,9 @@ def test_design_round_trip_leaves_out_timings(tmp_path):
 
 def test_a_design_says_of_failed_models_why(tmp_path):
     design = a_design()
-    table = pd.DataFrame({"model": ["gone", "square"], "failure": ["no such mesh", None]})
+    table = pd.DataFrame({"model": ["gone", "square"], "failure": ["no such mesh", ""]})
     stored = lu.load(lu.save(dataclasses.replace(design, table=table), tmp_path))
-    assert stored.table["failure"].tolist() == ["no such mesh", None]
+    assert stored.table["failure"].tolist() == ["no such mesh", ""]
     with pytest.raises(ValueError, match="are more than the rows"):
         lu.load(lu.save(dataclasses.replace(design, table=table[:0]), tmp_path))
 
