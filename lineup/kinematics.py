@@ -57,8 +57,8 @@ def frames(motion: Motion, every: int = 1, substeps: int = 1) -> Iterator[FloatA
     >>> import numpy as np, lineup as lu
     >>> path = lu.layered_path(lu.VoxelSolid(np.ones((2, 2, 1), bool)))
     >>> poses = list(lu.frames(lu.unfold(path)))
-    >>> len(poses), np.ptp(poses[-1], axis=0).max()
-    (3, 3.0)
+    >>> len(poses), int(np.ptp(poses[-1], axis=0).max())
+    (2, 3)
     """
     if every < 1 or substeps < 1:
         raise ValueError(f"every and substeps must be at least 1, got {every} and {substeps}")

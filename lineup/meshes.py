@@ -247,14 +247,15 @@ def turned_upright(surface: Surface, up: str | tuple[float, float, float]) -> Su
     """
     direction = _direction(up)
     x, y, z = direction
-    if z == 1:
-        return surface
-    if z == -1:
+    if np.hypot(x, y) < 1e-12:
+        if z > 0:
+            return surface
         turn = np.diag([1.0, -1.0, -1.0])
     else:
-        # Rodrigues' formula about the axis direction × z.
+        # Rodrigues' formula about the axis direction × z; near -z, 1 + z would lose its digits.
         across = np.array([[0, 0, -x], [0, 0, -y], [x, y, 0]])
-        turn = np.eye(3) + across + across @ across / (1 + z)
+        one_more = 1 + z if z > 0 else (x * x + y * y) / (1 - z)
+        turn = np.eye(3) + across + across @ across / one_more
     return replace(
         surface,
         vertices=np.ascontiguousarray(surface.vertices @ turn.T),

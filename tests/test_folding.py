@@ -183,7 +183,6 @@ def test_bad_arguments_are_refused_in_one_line(options, message):
     assert "\n" not in str(error.value)
 
 
-@pytest.mark.xfail(strict=True, reason="growth does not check its start paths")
 @pytest.mark.parametrize(
     "voxels",
     [

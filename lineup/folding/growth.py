@@ -102,8 +102,8 @@ def growth(
             raise ValueError(f"{name} must not be negative, got {value}")
     rng = np.random.default_rng(seed)
     grid, body = body_of(solid)
-    starts = [path.voxels for path in (layered_paths(solid, seed) if paths is None else paths)]
-    starts.append(_exposed_bar(solid))
+    paths = layered_paths(solid, seed) if paths is None else paths
+    starts = [*_checked_starts(solid, paths), _exposed_bar(solid)]
     target = NEVER if length is None else length
     report = progress or (lambda share: None)
     work = len(starts) * trial_rounds + rounds
@@ -129,6 +129,22 @@ def folding_of(solid: VoxelSolid, grid: Grid, fold: Fold, method: str) -> Foldin
     voxels = grid.xyz[path]
     motion = motion_of(voxels, fold.states[: fold.size[1]])
     return Folding(VoxelPath(voxels, dropped=dropped, method=method), motion)
+
+
+def _checked_starts(solid: VoxelSolid, paths: Sequence[VoxelPath]) -> list[IntArray]:
+    """The voxels of start paths, once it is clear that they are even simple paths of the solid."""
+    shape = solid.occupancy.shape
+    for k, path in enumerate(paths):
+        voxels = path.voxels
+        simple = len(np.unique(voxels, axis=0)) == len(voxels)
+        adjacent = (np.abs(np.diff(voxels, axis=0)).sum(axis=1) == 1).all()
+        inside = ((voxels >= 0) & (voxels < shape)).all() and solid.occupancy[tuple(voxels.T)].all()
+        if not (simple and adjacent and inside and len(voxels) % 2 == 0 and len(voxels)):
+            raise ValueError(
+                f"start path {k} must be a simple path of an even number of voxels of the solid, "
+                "each sharing a face with the next"
+            )
+    return [path.voxels for path in paths]
 
 
 def _exposed_bar(solid: VoxelSolid) -> IntArray:
