@@ -124,8 +124,9 @@ def _run_experiment(
         )
     if experiment.task == "table2":
         table = tables.table2(rows)
-        folders = {str(task.settings["model"]): task.folder for task in todo}
-        written = tables.write_table(table, out, name) + _draw_chains(table, folders, out, name)
+        names = [Path(str(task.settings["model"])).stem for task in todo]
+        files = [t.folder / f"{n}.folding.json" for t, n in zip(todo, names, strict=True)]
+        written = tables.write_table(table, out, name) + _draw_chains(table, files, out, name)
         console.print(tables.terminal_table(table))
     else:
         table = rows
@@ -134,16 +135,20 @@ def _run_experiment(
     _end(_shortfalls(table))
 
 
-def _draw_chains(table: pd.DataFrame, folders: dict[str, Path], out: Path, name: str) -> list[Path]:
-    """A sheet of all chains that are certified, and a page with the unfolding of the first."""
+def _draw_chains(table: pd.DataFrame, files: list[Path], out: Path, name: str) -> list[Path]:
+    """A sheet of all chains that are certified, and a page with the unfolding of the first.
+
+    `files` has the folding of each row.
+    """
     from . import draw
     from .solid import Folding
     from .storage import load
 
-    rows = table[table["failure"] == ""].to_dict("records")
+    good = (table["failure"] == "").tolist()
+    rows = table[good].to_dict("records")
     if not rows:
         return []
-    stored = [load(folders[row["model"]] / f"{row['model']}.folding.json") for row in rows]
+    stored = [load(file) for file, is_good in zip(files, good, strict=True) if is_good]
     chains = [folding for folding in stored if isinstance(folding, Folding)]
     captions = [
         f"{row['model'].replace('_', ' ')}\n{row['length']:,.0f} of {row['voxels']:,.0f} voxels"
@@ -172,7 +177,7 @@ def run_models(
     save(design, out)
     table = tables.table2(design.table)
     tables.write_table(table, out, "table")
-    _draw_chains(table, dict.fromkeys(names, out), out, "chains")
+    _draw_chains(table, [out / f"{name}.folding.json" for name in names], out, "chains")
     console.print(tables.terminal_table(table))
     typer.echo(f"written: {out}")
     _end(_shortfalls(table))

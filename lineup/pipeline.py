@@ -116,10 +116,10 @@ def lineup(
 def table2_task(
     model: str, blocks: int, seed: int, *, folder: Path, progress: Callable[[str], None]
 ) -> dict[str, Any]:
-    """One row of Table 2; stores ``MODEL.solid.json`` and ``MODEL.folding.json`` in `folder`."""
+    """One row of Table 2; stores ``NAME.solid.json`` and ``NAME.folding.json`` in `folder`."""
     _check_settings(blocks, seed)
     result = _line_up(model, blocks, seed, progress)
-    _store(result, model, folder)
+    _store(result, Path(model).stem, folder)
     return result.row
 
 

@@ -11,10 +11,11 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+import trimesh
 from rich.console import Console
 
 import lineup as lu
-from lineup import cli, sweep
+from lineup import cli, draw, sweep
 from lineup._progress import Reporter
 from lineup.kinematics import Move
 
@@ -117,6 +118,22 @@ def test_a_sweep_of_another_task_is_a_plain_table(lineup, tmp_path, monkeypatch)
     assert pd.read_csv("results/e.csv").length.tolist() == [2, 4, 2, 4]
 
 
+def test_chains_of_a_file_and_of_one_model_twice_are_each_drawn(lineup, tmp_path, monkeypatch):
+    drawn = []
+    monkeypatch.setattr(draw, "contact_sheet", lambda chains, _: drawn.extend(chains))
+    monkeypatch.setattr(draw, "unfolding", lambda chain: chain)
+    monkeypatch.setattr(draw, "save", lambda figure, file: file)
+    (tmp_path / "meshes").mkdir()
+    trimesh.creation.box((4, 3, 2)).export(tmp_path / "meshes" / "brick.stl")
+    (tmp_path / "e.yaml").write_text(
+        "{title: t, task: table2, fixed: {seed: 0},"
+        " grids: [{model: meshes/brick.stl, blocks: [8, 9]}]}"
+    )
+    code, _, err = lineup("sweep", "e.yaml", "--engine", "serial")
+    assert (code, err) == (0, "")
+    assert [len(chain.path) for chain in drawn] == [16, 18]
+
+
 def test_an_interrupt_says_what_is_kept(lineup, tmp_path, monkeypatch):
     monkeypatch.setitem(sweep.TASKS, "fake", "fake_tasks:work")
     monkeypatch.setenv("LINEUP_TEST_CALLS", str(tmp_path / "calls"))
@@ -179,7 +196,6 @@ def test_verify_a_design(lineup, tmp_path):
 
 
 def test_voxelize_path_and_verify_on_a_mesh_file(lineup, tmp_path):
-    trimesh = pytest.importorskip("trimesh")
     trimesh.creation.box((4, 3, 2)).export(tmp_path / "brick.stl")
     code, out, err = lineup("voxelize", "brick.stl", "--voxels", 24)
     assert (code, err) == (0, "")
