@@ -15,7 +15,7 @@ from lineup.folding import _fold, _moves
 from lineup.folding.growth import _exposed_bar, body_of, straightenable
 from lineup.layered import layered_paths
 from lineup.motion._chain import cells_of
-from lineup.motion.plan import motion_of
+from lineup.motion.plan import left_folded, motion_of, peel_plan
 
 
 def block(*shape):
@@ -44,8 +44,13 @@ class Grown:
     def change(self):
         """Some random certified changes of one kind."""
         fold, rng = self.fold, self.rng
-        kind = rng.integers(3)
-        if kind == 0:
+        kind = rng.integers(4)
+        if kind == 3:  # a plan in which both ends let go by turns
+            path = fold.path[: fold.size[0]].copy()
+            states = peel_plan(self.grid, path, rng, bias=0.5)
+            if left_folded(states) <= 1:
+                _fold.load(fold, path, states)
+        elif kind == 0:
             _moves.fill(self.grid, self.body, fold, 40, _fold.NEVER, rng)
         elif kind == 1:
             _moves.anneal(self.grid, self.body, fold, 10, 3.0, 0.1, _fold.NEVER, rng)
@@ -109,6 +114,24 @@ def test_plan_and_notes_stay_true_through_random_changes(occupancy, seed):
     for _ in range(5):
         grown.change()
         grown.check(solid)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_rods_of_two_busy_ends_keep_clear_of_each_other(seed):
+    solid = block(*[(4, 4, 3), (3, 3, 5), (5, 4, 2)][seed % 3])
+    start = layered_paths(solid, seed, starts=1)[0].voxels[: 12 + seed]
+    grown = Grown(solid, start, seed)
+    for _ in range(25):
+        path = grown.fold.path[: grown.fold.size[0]].copy()
+        states = peel_plan(grown.grid, path, grown.rng, bias=0.5)
+        if left_folded(states) <= 1:
+            _fold.load(grown.fold, path, states)
+        length = int(grown.rng.integers(6, len(path) + 1))
+        _moves.contract_all(
+            grown.grid, grown.fold, grown.rng.random(len(grown.body.solid)) < 0.3, length
+        )
+        _moves.anneal(grown.grid, grown.body, grown.fold, 4, 9.0, 9.0, _fold.NEVER, grown.rng)
+        assert rod_fault(grown.voxels, grown.states) == ""
 
 
 @pytest.mark.parametrize("seed", range(20))
