@@ -63,25 +63,29 @@ def shortened_path(path: VoxelPath, length: int) -> VoxelPath:
             if not len(chosen):
                 break
             voxels = np.delete(voxels, np.concatenate([np.arange(i + 1, j) for i, j in chosen]), 0)
-    return with_steps_left_out(path, voxels[:length])
+    return cut_down(path, voxels, length)
 
 
-def with_steps_left_out(path: VoxelPath, voxels: IntArray) -> VoxelPath:
-    """`path` through `voxels` alone, some of its own; its method says how many went."""
+def cut_down(path: VoxelPath, voxels: IntArray, length: int) -> VoxelPath:
+    """`path` through the first `length` of `voxels`, some of its own; its method says what went."""
     occupancy = occupancy_of(path)
     surface = grid.surface(occupancy)
-    removed = np.zeros_like(occupancy)
-    removed[tuple(path.voxels.T)] = True
-    removed[tuple(voxels.T)] = False
-    occupancy[tuple(voxels.T)] = False
-    n_surface = int((removed & surface).sum())
-    n_inside = int(removed.sum()) - n_surface
+    contracted = np.zeros_like(occupancy)
+    contracted[tuple(path.voxels.T)] = True
+    contracted[tuple(voxels.T)] = False
+    kept = np.zeros_like(occupancy)
+    kept[tuple(voxels[:length].T)] = True
+    n_surface = int((contracted & surface).sum())
+    went = (
+        f"{int(contracted.sum()) - n_surface} voxels inside, {n_surface} on the surface "
+        f"and {max(len(voxels) - length, 0)} off the end"
+    )
     return replace(
         path,
-        voxels=voxels,
-        visits=_visits(path, ~removed[tuple(path.voxels.T)]),
-        dropped=np.argwhere(occupancy).astype(np.int32),
-        method=f"{path.method}, trimmed by {n_inside} voxels inside and {n_surface} on the surface",
+        voxels=voxels[:length],
+        visits=_visits(path, kept[tuple(path.voxels.T)]),
+        dropped=np.argwhere(occupancy & ~kept).astype(np.int32),
+        method=f"{path.method}, trimmed by {went}",
     )
 
 

@@ -96,14 +96,16 @@ def lineup(
     for name, source in zip(names, models, strict=True):
         try:
             result = _line_up(source, blocks, seed, partial(tell, name))
-        except (ValueError, OSError) as error:
-            rows.append({"model": name, "blocks": blocks, "failure": str(error)})
-            tell(name, f"failed: {error}")
+        except Exception as error:  # whatever is wrong with one model, the others go on
+            expected = isinstance(error, ValueError | OSError)
+            reason = str(error) if expected else f"{type(error).__name__}: {error}"
+            rows.append({"model": name, "blocks": blocks, "failure": reason})
+            tell(name, f"failed: {reason}")
             continue
         if folder is not None:
             _store(result, name, Path(folder))
         results.append(result)
-        rows.append({"model": name, "blocks": blocks, **result.row})
+        rows.append({"model": name, "blocks": blocks, **result.row, "failure": ""})
         tell(name, "done")
     return Design(
         tuple(result.solid for result in results),
@@ -176,7 +178,7 @@ def _line_up(source: Source, blocks: int, seed: int, tell: Callable[[str], None]
         certificate = certify(trimmed.motion, DIAMETER, MAX_BEND_DEG)
     judged = {
         **_path_row(solid, len(paths[0]), found, trimmed),
-        **_verdict_row(certificate, path_certificate),
+        **_verdict_row(trimmed, certificate, path_certificate),
     }
     return _Result(solid, trimmed, certificate, {**judged, **clock.seconds})
 
@@ -206,10 +208,10 @@ def _path_row(solid: VoxelSolid, layered: int, folded: int, trimmed: Folding) ->
     }
 
 
-def _verdict_row(motion: Certificate, path: Certificate) -> dict[str, Any]:
+def _verdict_row(trimmed: Folding, motion: Certificate, path: Certificate) -> dict[str, Any]:
     faults = [c.reason for c in (path, motion) if not c.ok]
     return {
-        "straight": motion.ok,
+        "straight": trimmed.motion.straight,
         "certified": motion.ok and path.ok,
         "diameter": motion.diameter,
         "max_bend_deg": motion.max_bend_deg,

@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from .._options import checked
 from ..layered import layered_path
 from ..motion import unfold
@@ -54,10 +56,13 @@ def fold(
     checked(FOLD_METHODS, method, options, "fold method")
     if solid.size < 2:
         raise ValueError("a path needs at least two voxels, the solid has 1")
-    if length is not None and not (length % 2 == 0 and 2 <= length <= solid.size):
-        raise ValueError(
-            f"length must be an even number from 2 to the solid's {solid.size} voxels, got {length}"
-        )
+    if length is not None:
+        whole = isinstance(length, int | np.integer)
+        if not (whole and length % 2 == 0 and 2 <= length <= solid.size):
+            raise ValueError(
+                f"length must be an even number from 2 to the solid's {solid.size} voxels, "
+                f"got {length!r}"
+            )
     folding = FOLD_METHODS[method](solid, seed, length, **options)
     if length is None or len(folding.path) <= length:
         return folding

@@ -339,7 +339,7 @@ def _clear_quadrant(
     while not grid.outside[row]:
         c = row
         while not grid.outside[c]:
-            if c != start and _still_folded(fold, span, c, place):
+            if _still_folded(fold, span, c, place):
                 return False
             c += grid.offset[f]
         row += grid.offset[d]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..contraction import occupancy_of, shortened_path, with_steps_left_out
+from ..contraction import cut_down, occupancy_of, shortened_path
 from ..grid import IntArray, surface
 from ..motion import unfold
 from ..motion._chain import box_grid, cells_of
@@ -25,9 +25,9 @@ def shortened_folding(folding: Folding, length: int) -> Folding:
     fold = new_fold(len(grid.outside), cells, states_of(folding.motion), len(cells))
     contract_all(grid, fold, np.pad(surface(occupancy), 1).ravel(), length)
     contract_all(grid, fold, np.zeros(len(grid.outside), bool), length)
-    voxels = grid.xyz[fold.path[:length]]
-    motion = motion_of(voxels, _without_end(fold.states[: fold.size[1]], length))
-    return Folding(with_steps_left_out(folding.path, voxels), motion)
+    path = cut_down(folding.path, grid.xyz[fold.path[: fold.size[0]]], length)
+    plan = _without_end(fold.states[: fold.size[1]], length)
+    return Folding(path, motion_of(path.voxels, plan))
 
 
 def _without_end(states: IntArray, length: int) -> IntArray:

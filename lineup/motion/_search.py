@@ -180,8 +180,7 @@ def _enter_peels(grid: Grid, chain: Chain, frontier: Frontier, node: int, front_
     gap = frontier.state[node, 1] - frontier.state[node, 0]
     nearest = gap
     for turn in range(2):
-        end = turn if front_first else 1 - turn
-        end = 1 - end
+        end = 1 - turn if front_first else turn
         state = frontier.state[node].copy()
         if may_peel(grid, chain, state, end):
             state[end] += INWARD[end]

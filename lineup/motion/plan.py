@@ -99,8 +99,6 @@ def states_of(motion: Motion) -> IntArray:
 
     for kind, joint, other, value in motion.moves.tolist():
         end = int(other > joint)
-        if kind == Move.PEEL:
-            let_go(end, other)
         let_go(end, joint)
         if kind == Move.SWING:
             state[2 + end] = value
