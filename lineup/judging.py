@@ -284,8 +284,9 @@ def certify_path(path: VoxelPath, solid: VoxelSolid) -> Certificate:
     The voxels must be face-adjacent voxels of the solid refined `path.refinement` times, none
     visited twice, an even number of them; `dropped` must be exactly the rest, in lexicographic
     order. If there are `visits`, they must be the maximal runs of the path inside one layer
-    component each, give every component one node number of its own, nest like brackets
-    (never node A, B, A, B), and count in `depth` the nodes visited both before and after.
+    component each, give no two components the same piece number, nest like brackets (never
+    piece A, B, A, B), come back to a piece beside the voxel where they left it (Section 4.2,
+    Case 2), and count in `depth` the pieces visited both before and after.
 
     Returns
     -------
@@ -356,27 +357,37 @@ def _visits_fault(path: VoxelPath, solid: VoxelSolid) -> tuple[str, int]:
             return f"no visit {k} of steps {start} to {stop}, one run in a component", int(start)
     if len(visits) > len(starts):
         return f"{len(visits)} visits, but the path has {len(starts)} runs", len(path) - 1
-    node_of: dict[int, int] = {}
     component_of: dict[int, int] = {}
-    for start, node, here in zip(starts, visits[:, 2], component[starts], strict=True):
-        if node_of.setdefault(here, node) != node:
-            return f"one component is called node {node_of[here]} and node {node}", int(start)
-        if component_of.setdefault(node, here) != here:
-            return f"node {node} is the name of two components", int(start)
-    return _nesting_fault(visits)
+    for start, piece, here in zip(starts, visits[:, 2], component[starts], strict=True):
+        if component_of.setdefault(piece, here) != here:
+            return f"piece {piece} lies in two components", int(start)
+    reason, where = _nesting_fault(visits)
+    return (reason, where) if reason else _return_fault(path)
 
 
 def _nesting_fault(visits: grid.IntArray) -> tuple[str, int]:
-    last = {int(node): k for k, node in enumerate(visits[:, 2])}
-    open_nodes: list[int] = []
-    for k, (start, _, node, depth) in enumerate(visits.tolist()):
-        while open_nodes and last[open_nodes[-1]] < k:
-            open_nodes.pop()
-        if node not in open_nodes:
-            open_nodes.append(node)
-        elif open_nodes[-1] != node:
-            inner = open_nodes[-1]
-            return f"nodes {node} and {inner} alternate instead of nesting", start
-        if depth != len(open_nodes) - 1:
-            return f"visit {k} has depth {depth}, but {len(open_nodes) - 1} nodes enclose it", start
+    last = {int(piece): k for k, piece in enumerate(visits[:, 2])}
+    open_pieces: list[int] = []
+    for k, (start, _, piece, depth) in enumerate(visits.tolist()):
+        while open_pieces and last[open_pieces[-1]] < k:
+            open_pieces.pop()
+        if piece not in open_pieces:
+            open_pieces.append(piece)
+        elif open_pieces[-1] != piece:
+            inner = open_pieces[-1]
+            return f"pieces {piece} and {inner} alternate instead of nesting", start
+        n_around = len(open_pieces) - 1
+        if depth != n_around:
+            return f"visit {k} has depth {depth}, but {n_around} pieces enclose it", start
+    return "", -1
+
+
+def _return_fault(path: VoxelPath) -> tuple[str, int]:
+    left: dict[int, int] = {}
+    for start, stop, piece, _ in path.visits.tolist():
+        if piece in left:
+            gap = np.abs(path.voxels[start] - path.voxels[left[piece]]).sum()
+            if gap != 1:
+                return f"piece {piece} goes on {gap} voxels from where it was left", start
+        left[piece] = stop - 1
     return "", -1

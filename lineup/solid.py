@@ -91,9 +91,10 @@ class VoxelPath:
     voxels : (P, 3) int32
     visits : (V, 4) int32
         The layer visits of a layered path in order, empty where the path is not layered. A row
-        is (start, stop, node, depth): steps start..stop-1 lie in that node of the Reeb graph,
-        and depth counts the nodes whose visits enclose this one (0 on the MSP, 1 or more in
-        nested MSCs).
+        is (start, stop, piece, depth): steps start..stop-1 lie in that planar piece, and depth
+        counts the pieces whose visits enclose this one (0 on the MSP, 1 or more in nested MSCs).
+        A strictly layered path has one piece in each node of the Reeb graph, of the node's
+        number.
     dropped : (D, 3) int32
         The voxels of the solid that the path leaves out, in lexicographic order.
     refinement : int

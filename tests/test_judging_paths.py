@@ -9,6 +9,7 @@ from polycubes import STEPS, polycubes
 
 import lineup as lu
 from lineup import grid
+from lineup.visits import visits_of
 
 # Two pillars on a plate of 4 x 2 voxels; the path climbs each pillar and comes back.
 PILLARS = np.zeros((4, 2, 3), bool)
@@ -117,20 +118,20 @@ FAULTS = {
         "one run in a component",
     ),
     "shifted visit": ({"visits": changed(VISITS, 2, 0, 3)}, 2, "no visit 2 of steps 2 to 4"),
-    "node of two components": (
+    "piece of two components": (
         {"visits": changed(changed(VISITS, 5, 2, VISITS[1, 2]), 7, 2, VISITS[1, 2])},
-        None,
-        "is the name of two components",
+        11,
+        "lies in two components",
     ),
-    "component of two nodes": (
+    "piece cut in two": (
         {"visits": changed(VISITS, 7, 2, 99)},
-        None,
-        "one component is called node",
+        12,
+        "visit 6 has depth 2, but 1 pieces enclose it",
     ),
     "depth too small": (
         {"visits": changed(VISITS, 2, 3, 1)},
         2,
-        "visit 2 has depth 1, but 2 nodes",
+        "visit 2 has depth 1, but 2 pieces",
     ),
     "depth on the MSP": ({"visits": changed(VISITS, 4, 3, 1)}, None, "visit 4 has depth 1, but 0"),
 }
@@ -145,7 +146,19 @@ def test_planted_faults_are_refused(name):
     assert where is None or verdict.where == where
 
 
-def test_alternating_nodes_are_refused():
+def test_a_piece_goes_on_beside_where_it_was_left():
+    """Over a gap of one voxel the path comes back, but no link of the plate was ever there."""
+    bridge = np.ones((3, 1, 2), bool)
+    bridge[1, 0, 0] = False
+    plate = np.concatenate([bridge, np.ones((3, 1, 2), bool)], axis=1)
+    voxels = walk("UEEDNU")
+    there_and_back = np.array([(0, 1, 0, 0), (1, 4, 1, 1), (4, 6, 0, 0)])
+    path = lu.VoxelPath(voxels[:6], there_and_back, rest(plate, voxels[:6]))
+    verdict = lu.certify_path(path, lu.VoxelSolid(plate))
+    assert (verdict.reason, verdict.where) == ("piece 0 goes on 2 voxels from where it was left", 4)
+
+
+def test_alternating_pieces_are_refused():
     """Bottom, top, bottom, top: the second bottom leaves a top that is not finished."""
     block = np.ones((4, 1, 2), bool)
     voxels = walk("UEDEUED")
@@ -156,10 +169,24 @@ def test_alternating_nodes_are_refused():
     assert verdict.where == 3
 
 
+def goes_on_beside(voxels, visits):
+    """Whether every run begins beside the end of the last run of the same number."""
+    left = {}
+    beside = []
+    for start, stop, piece, _ in visits.tolist():
+        if piece in left:
+            beside.append(sum(abs(a - b) for a, b in zip(voxels[start], left[piece], strict=True)))
+        left[piece] = voxels[stop - 1]
+    return all(gap == 1 for gap in beside)
+
+
 @settings(max_examples=150, deadline=None)
 @given(polycubes(40), st.data())
 def test_visits_agree_with_flooding(occupancy, data):
-    """Any walk in any solid: certified just where no two nodes alternate."""
+    """Any walk in any solid, its runs named after their components or read as pieces.
+
+    Named after components, it is certified just where these nest and are gone back to by Case 2.
+    """
     voxels = [data.draw(st.sampled_from(list(map(tuple, np.argwhere(occupancy).tolist()))))]
     free = {tuple(v) for v in np.argwhere(occupancy).tolist()} - set(voxels)
     while True:
@@ -175,7 +202,10 @@ def test_visits_agree_with_flooding(occupancy, data):
     solid = lu.VoxelSolid(occupancy)
     path = lu.VoxelPath(np.array(voxels), visits, rest(occupancy, voxels))
     verdict = lu.certify_path(path, solid)
-    assert verdict.ok != alternates(visits[:, 2].tolist())
+    back_beside = goes_on_beside(voxels, visits)
+    assert verdict.ok == (back_beside and not alternates(visits[:, 2].tolist()))
+    pieces = lu.VoxelPath(path.voxels, visits_of(path.voxels), path.dropped)
+    assert lu.certify_path(pieces, solid).ok
     row, column = data.draw(st.integers(0, len(visits) - 1)), data.draw(st.integers(0, 3))
     wrong = changed(visits, row, column, visits[row, column] + data.draw(st.sampled_from([-1, 1])))
     renamed = column == 2 and (visits[:, 2] == visits[row, 2]).sum() == 1
