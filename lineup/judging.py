@@ -286,7 +286,8 @@ def certify_path(path: VoxelPath, solid: VoxelSolid) -> Certificate:
     order. If there are `visits`, they must be the maximal runs of the path inside one layer
     component each, give no two components the same piece number, nest like brackets (never
     piece A, B, A, B), come back to a piece beside the voxel where they left it (Section 4.2,
-    Case 2), and count in `depth` the pieces visited both before and after.
+    Case 2), and count in `depth` the pieces visited both before and after. Those of depth 0, the
+    MSP, must lie in different components.
 
     Returns
     -------
@@ -362,7 +363,7 @@ def _visits_fault(path: VoxelPath, solid: VoxelSolid) -> tuple[str, int]:
         if component_of.setdefault(piece, here) != here:
             return f"piece {piece} lies in two components", int(start)
     reason, where = _nesting_fault(visits)
-    return (reason, where) if reason else _return_fault(path)
+    return (reason, where) if reason else _return_fault(path, component)
 
 
 def _nesting_fault(visits: grid.IntArray) -> tuple[str, int]:
@@ -382,12 +383,16 @@ def _nesting_fault(visits: grid.IntArray) -> tuple[str, int]:
     return "", -1
 
 
-def _return_fault(path: VoxelPath) -> tuple[str, int]:
+def _return_fault(path: VoxelPath, component: NDArray[np.int32]) -> tuple[str, int]:
     left: dict[int, int] = {}
-    for start, stop, piece, _ in path.visits.tolist():
+    on_msp: dict[int, int] = {}
+    for start, stop, piece, depth in path.visits.tolist():
         if piece in left:
             gap = np.abs(path.voxels[start] - path.voxels[left[piece]]).sum()
             if gap != 1:
                 return f"piece {piece} goes on {gap} voxels from where it was left", start
         left[piece] = stop - 1
+        if depth == 0 and on_msp.setdefault(component[start], piece) != piece:
+            other = on_msp[component[start]]
+            return f"pieces {other} and {piece} of the MSP lie in one component", start
     return "", -1

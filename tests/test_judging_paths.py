@@ -158,6 +158,16 @@ def test_a_piece_goes_on_beside_where_it_was_left():
     assert (verdict.reason, verdict.where) == ("piece 0 goes on 2 voxels from where it was left", 4)
 
 
+def test_the_msp_comes_to_no_node_twice():
+    """Up one column and down the next one, told as two pieces of the MSP instead of one."""
+    block = np.ones((4, 1, 2), bool)
+    voxels = walk("EUED")[1:]
+    rows = np.array([(0, 1, 0, 0), (1, 3, 1, 0), (3, 4, 2, 0)])
+    path = lu.VoxelPath(voxels, rows, rest(block, voxels))
+    verdict = lu.certify_path(path, lu.VoxelSolid(block))
+    assert (verdict.reason, verdict.where) == ("pieces 0 and 2 of the MSP lie in one component", 3)
+
+
 def test_alternating_pieces_are_refused():
     """Bottom, top, bottom, top: the second bottom leaves a top that is not finished."""
     block = np.ones((4, 1, 2), bool)
@@ -183,10 +193,7 @@ def goes_on_beside(voxels, visits):
 @settings(max_examples=150, deadline=None)
 @given(polycubes(40), st.data())
 def test_visits_agree_with_flooding(occupancy, data):
-    """Any walk in any solid, its runs named after their components or read as pieces.
-
-    Named after components, it is certified just where these nest and are gone back to by Case 2.
-    """
+    """Any walk in any solid: certified just where components nest and are gone back to by Case 2."""
     voxels = [data.draw(st.sampled_from(list(map(tuple, np.argwhere(occupancy).tolist()))))]
     free = {tuple(v) for v in np.argwhere(occupancy).tolist()} - set(voxels)
     while True:
@@ -204,8 +211,13 @@ def test_visits_agree_with_flooding(occupancy, data):
     verdict = lu.certify_path(path, solid)
     back_beside = goes_on_beside(voxels, visits)
     assert verdict.ok == (back_beside and not alternates(visits[:, 2].tolist()))
-    pieces = lu.VoxelPath(path.voxels, visits_of(path.voxels), path.dropped)
-    assert lu.certify_path(pieces, solid).ok
+    here = np.repeat(visits[:, 2], visits[:, 1] - visits[:, 0])
+    if verdict.ok:
+        assert visits_of(path.voxels, here).tolist() == visits.tolist()
+    apart = visits.copy()
+    apart[:, 2:] = np.stack([np.arange(len(visits)), np.zeros(len(visits))], axis=1)
+    all_msp = lu.VoxelPath(path.voxels, apart, path.dropped)
+    assert lu.certify_path(all_msp, solid).ok == (len(set(visits[:, 2].tolist())) == len(visits))
     row, column = data.draw(st.integers(0, len(visits) - 1)), data.draw(st.integers(0, 3))
     wrong = changed(visits, row, column, visits[row, column] + data.draw(st.sampled_from([-1, 1])))
     renamed = column == 2 and (visits[:, 2] == visits[row, 2]).sum() == 1
