@@ -14,6 +14,7 @@ import numpy as np
 from ._options import checked
 from .linking import Effort, assembled, layers, linked, promising_plan
 from .solid import VoxelPath, VoxelSolid
+from .spatial import free3d, nested, ufree
 
 
 def layered_path(
@@ -102,5 +103,23 @@ def _layered(
     )[0]
 
 
-PATH_METHODS: dict[str, Callable[..., VoxelPath]] = {"layered": _layered}
+def _nested(
+    solid: VoxelSolid,
+    seed: int,
+    *,
+    starts: int = 4,
+    sweeps: int = 6000,
+    surface_weight: float = 1.5,
+    both_ends_on_top: bool = False,
+) -> VoxelPath:
+    path = _layered(solid, seed, starts=starts, both_ends_on_top=both_ends_on_top)
+    return nested(path, solid, sweeps, surface_weight, seed)
+
+
+PATH_METHODS: dict[str, Callable[..., VoxelPath]] = {
+    "layered": _layered,
+    "nested": _nested,
+    "free3d": free3d,
+    "ufree": ufree,
+}
 """The path methods by name: functions of a solid, a seed and keyword-only options."""

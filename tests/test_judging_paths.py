@@ -193,7 +193,7 @@ def goes_on_beside(voxels, visits):
 @settings(max_examples=150, deadline=None)
 @given(polycubes(40), st.data())
 def test_visits_agree_with_flooding(occupancy, data):
-    """Any walk in any solid: certified just where components nest and are gone back to by Case 2."""
+    """Any walk in any solid: certified if components nest and are gone back to by Case 2."""
     voxels = [data.draw(st.sampled_from(list(map(tuple, np.argwhere(occupancy).tolist()))))]
     free = {tuple(v) for v in np.argwhere(occupancy).tolist()} - set(voxels)
     while True:

@@ -1,0 +1,69 @@
+"""Layered paths with more excursions: a layered path annealed as a whole."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .. import grid
+from ..solid import VoxelPath, VoxelSolid
+from ..visits import visits_of
+from ._anneal import Stage, Terms
+from ._loops import loops_of
+from ._nested import SINGLE, Nest, anneal_nested, label_piece
+from ._solids import board_of, cells_of, path_through
+from ._strands import FREE, LABEL, Board, drop_cycles, lay, path_cells
+
+COOLING = Stage(Terms(0.35, 0.0, 0.5, 0.0), Terms(0.08, 0.0, 5.0, 0.0))
+
+FILLING = Stage(Terms(0.15, 0.0, 50.0, 0.0), Terms(0.05, 0.0, 50.0, 0.0))
+
+
+def nested(
+    path: VoxelPath, solid: VoxelSolid, sweeps: int, surface_weight: float, seed: int
+) -> VoxelPath:
+    """A layered path with excursions added, moved and taken away so that it covers more.
+
+    Each still leaves a piece for the layer above or below at one voxel and comes back beside it,
+    but a node may hold many pieces, down to two voxels.
+    """
+    rng = np.random.default_rng(seed)
+    board = board_of(solid, surface_weight)
+    loops = loops_of(board.weight > 0, board.stride)
+    lay(board, cells_of(path.voxels, solid))
+    nest = _nest_of(path, solid, board)
+    n = sweeps * solid.size
+    anneal_nested(board, nest, loops, COOLING, n - n // 5, rng)
+    drop_cycles(board)
+    anneal_nested(board, nest, loops, FILLING, n // 5, rng)
+    drop_cycles(board)
+    cells = path_cells(board)
+    _, pieces = np.unique(nest.piece[cells], return_inverse=True)
+    bare = path_through(cells, solid, None, "nested")
+    return path_through(cells, solid, visits_of(bare.voxels, pieces.astype(np.int32)), "nested")
+
+
+def _nest_of(path: VoxelPath, solid: VoxelSolid, board: Board) -> Nest:
+    """Bridges and pieces of a layered path."""
+    nest = Nest(np.full(board.links.size, SINGLE), np.full(board.links.size, FREE))
+    for left, back in _returns(path.visits):
+        out, home = path.voxels[left], path.voxels[back]
+        low = min(home[2], path.voxels[back - 1][2])
+        a, b = cells_of(np.array([(*out[:2], low), (*home[:2], low)]), solid)
+        nest.mate[a] = grid.bar_directions(np.stack([out, home]))[0]
+        nest.mate[b] = (nest.mate[a] + 3) % 6
+    for cell in path_cells(board):
+        if nest.piece[cell] == FREE:
+            board.tally[LABEL] += 1
+            label_piece(board, nest, int(cell), board.tally[LABEL])
+    return nest
+
+
+def _returns(visits: grid.IntArray) -> list[tuple[int, int]]:
+    """Steps of a path at which a piece is left for an excursion, and gone on with."""
+    last_step: dict[int, int] = {}
+    found = []
+    for start, stop, piece, _ in visits.tolist():
+        if piece in last_step:
+            found.append((last_step[piece], start))
+        last_step[piece] = stop - 1
+    return found
