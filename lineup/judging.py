@@ -278,7 +278,7 @@ def _not_accordion(
     return ""
 
 
-def certify_path(path: VoxelPath, solid: VoxelSolid) -> Certificate:
+def certify_path(path: VoxelPath, solid: VoxelSolid, u_free: bool = False) -> Certificate:
     """Judge a path: simple, even, inside the solid, and truly described (Section 4).
 
     The voxels must be face-adjacent voxels of the solid refined `path.refinement` times, none
@@ -288,6 +288,13 @@ def certify_path(path: VoxelPath, solid: VoxelSolid) -> Certificate:
     piece A, B, A, B), come back to a piece beside the voxel where they left it (Section 4.2,
     Case 2), and count in `depth` the pieces visited both before and after. Those of depth 0, the
     MSP, must lie in different components.
+
+    Parameters
+    ----------
+    u_free : bool
+        Ask as well that no three consecutive links are sides of one unit square, and that one
+        end can leave the solid along a lattice ray without such a U: then pulling it unfolds
+        the path.
 
     Returns
     -------
@@ -301,7 +308,7 @@ def certify_path(path: VoxelPath, solid: VoxelSolid) -> Certificate:
     >>> lu.certify_path(lu.VoxelPath(np.array([(0, 0, 0), (1, 0, 0)])), solid).reason
     'certified'
     """
-    for check in (_path_fault, _inside_fault, _visits_fault):
+    for check in (_path_fault, _inside_fault, _visits_fault, *([_u_fault] if u_free else [])):
         reason, where = check(path, solid)
         if reason:
             return Certificate(ok=False, reason=reason, where=where)
@@ -396,3 +403,25 @@ def _return_fault(path: VoxelPath, component: NDArray[np.int32]) -> tuple[str, i
             other = on_msp[component[start]]
             return f"pieces {other} and {piece} of the MSP lie in one component", start
     return "", -1
+
+
+def _u_fault(path: VoxelPath, solid: VoxelSolid) -> tuple[str, int]:
+    steps = np.diff(path.voxels, axis=0)
+    us = (steps[2:] == -steps[:-2]).all(axis=1)
+    if us.any():
+        k = int(np.argmax(us))
+        return f"steps {k} to {k + 3} form a U", k
+    occupancy = _refined(solid, path.refinement)
+    for end, way_in in ((path.voxels[0], -steps[:2]), (path.voxels[-1], steps[-2:][::-1])):
+        for direction in grid.DIRECTIONS:
+            closes_a_u = len(way_in) == 2 and (direction == -way_in[1]).all()
+            if not closes_a_u and not _ray(occupancy, end, direction).any():
+                return "", -1
+    return "no end can leave the solid along a lattice ray", -1
+
+
+def _ray(occupancy: grid.BoolArray, end: grid.IntArray, direction: grid.IntArray) -> grid.BoolArray:
+    """What lies ahead of a voxel in a direction, up to the rim of the grid."""
+    axis = int(np.abs(direction).argmax())
+    line = np.moveaxis(occupancy, axis, 2)[tuple(np.delete(end, axis))]
+    return line[end[axis] + 1 :] if direction[axis] > 0 else line[: end[axis]]

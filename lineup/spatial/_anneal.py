@@ -41,7 +41,7 @@ from ._strands import (
 REACH = 2000
 """Cells of the path that a move without gain may turn round; beyond, it is refused."""
 
-END_SHARE = 0.02
+END_SHARE = 0.1
 """Share of end moves among the moves proposed."""
 
 KIND_SHARE = np.array([0.3, 0.4, 0.3 + 1e-9])

@@ -57,20 +57,14 @@ def cells_of(voxels: grid.IntArray, solid: VoxelSolid) -> NDArray[np.int64]:
     return cells
 
 
-def path_through(
-    cells: NDArray[np.int64], solid: VoxelSolid, visits: grid.IntArray | None, method: str
-) -> VoxelPath:
+def path_through(cells: NDArray[np.int64], solid: VoxelSolid, method: str) -> VoxelPath:
     """The path through flat cells of the board of a solid."""
     shape = np.array(solid.occupancy.shape) + 2 * MARGIN
     voxels = np.stack(np.unravel_index(cells, tuple(shape)), axis=1) - MARGIN
     left = solid.occupancy.copy()
     left[tuple(voxels.T)] = False
-    return VoxelPath(
-        voxels.astype(np.int32),
-        np.empty((0, 4), np.int32) if visits is None else visits,
-        np.argwhere(left).astype(np.int32),
-        method=method,
-    )
+    dropped = np.argwhere(left).astype(np.int32)
+    return VoxelPath(voxels.astype(np.int32), dropped=dropped, method=method)
 
 
 def even(cells: NDArray[np.int64], board: Board) -> NDArray[np.int64]:

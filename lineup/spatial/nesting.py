@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import grid
 from ..solid import VoxelPath, VoxelSolid
@@ -36,10 +39,14 @@ def nested(
     drop_cycles(board)
     anneal_nested(board, nest, loops, FILLING, n // 5, rng)
     drop_cycles(board)
-    cells = path_cells(board)
+    return path_in_pieces(path_cells(board), nest, solid)
+
+
+def path_in_pieces(cells: NDArray[np.int64], nest: Nest, solid: VoxelSolid) -> VoxelPath:
+    """The path through flat cells, its pieces numbered by label."""
     _, pieces = np.unique(nest.piece[cells], return_inverse=True)
-    bare = path_through(cells, solid, None, "nested")
-    return path_through(cells, solid, visits_of(bare.voxels, pieces.astype(np.int32)), "nested")
+    path = path_through(cells, solid, "nested")
+    return replace(path, visits=visits_of(path.voxels, pieces.astype(np.int32)))
 
 
 def _nest_of(path: VoxelPath, solid: VoxelSolid, board: Board) -> Nest:

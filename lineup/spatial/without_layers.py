@@ -37,4 +37,4 @@ def free3d(
     anneal(board, loops, COOLING, n - n // 5, rng)
     drop_cycles(board)
     anneal(board, loops, FILLING, n // 5, rng)
-    return path_through(even(path_cells(board), board), solid, None, "free3d")
+    return path_through(even(path_cells(board), board), solid, "free3d")

@@ -51,7 +51,7 @@ def ufree(
     lay(board, cells)
     anneal(board, loops, FILLING, n // 5, rng)
     cells = with_exit(cut_short(path_cells(board), board), board)
-    return path_through(cells, solid, None, "ufree")
+    return path_through(cells, solid, "ufree")
 
 
 def cut_short(cells: NDArray[np.int64], board: Board) -> NDArray[np.int64]:
