@@ -51,6 +51,9 @@ class PaperPath:
         The cycle C_bdy in order; empty if the boundary is not a cycle.
     interior : (I, 2) int32
         The path p_inter in order, from start to end; empty if there is none.
+    cycle : (C, 2) int32
+        Zhang and Liu's cycle in the interior, which has no ends; what the given ends cost is
+        ``len(cycle) - len(interior)``. Empty if the interior breaks its hypotheses.
     removed : (D, 2) int32
         Dangling voxels, in the order of their removal.
     reasons : tuple of str
@@ -60,6 +63,7 @@ class PaperPath:
     cells: IntArray
     boundary: IntArray
     interior: IntArray
+    cycle: IntArray
     removed: IntArray
     reasons: tuple[str, ...]
 
@@ -104,13 +108,18 @@ def paper_path(mask: BoolArray, start: Cell, end: Cell, seed: int = 0) -> PaperP
         return _failed(removed, *reasons, END_NOT_INTERIOR, boundary=boundary)
     if end not in part:
         return _failed(removed, *reasons, ENDS_APART, boundary=boundary)
-    interior, found = interior_path(part, start, end)
+    interior, cycle, found = interior_path(part, start, end)
     reasons += found
     cells_of_path = _merged(boundary, interior, np.random.default_rng(seed))
     if interior and not cells_of_path:
         reasons.append(NO_MERGE)
     return PaperPath(
-        _array(cells_of_path), _array(boundary), _array(interior), _array(removed), tuple(reasons)
+        _array(cells_of_path),
+        _array(boundary),
+        _array(interior),
+        _array(cycle),
+        _array(removed),
+        tuple(reasons),
     )
 
 
@@ -166,7 +175,7 @@ def _merged(cycle: list[Cell], path: list[Cell], rng: np.random.Generator) -> li
 
 def _failed(removed: list[Cell], *reasons: str, boundary: list[Cell] | None = None) -> PaperPath:
     nothing = _array([])
-    return PaperPath(nothing, _array(boundary or []), nothing, _array(removed), reasons)
+    return PaperPath(nothing, _array(boundary or []), nothing, nothing, _array(removed), reasons)
 
 
 def _array(cells: list[Cell]) -> IntArray:

@@ -98,25 +98,32 @@ def zhang_liu_cycle(mask: BoolArray) -> LongCycle:
     return LongCycle(np.array(cycle, np.int32).reshape(-1, 2), n_cycles, tuple(reasons))
 
 
-def interior_path(cells: set[Cell], start: Cell, end: Cell) -> tuple[list[Cell], list[str]]:
-    """A long path between two cells of a connected region, and the reason codes met.
+def interior_path(
+    cells: set[Cell], start: Cell, end: Cell
+) -> tuple[list[Cell], list[Cell], list[str]]:
+    """A long path between two cells of a connected region, the cycle it is from, reason codes.
 
     Zhang and Liu's ends are not free, and the paper does not say how it gets them where it wants
-    them. Here the path is the longer way round their cycle, then EXTEND puts in what it can of
-    the rest. Where there is no such cycle, a shortest path takes the place of that way.
+    them. Here the path follows their cycle one way round and EXTEND takes what it can of the
+    rest; the better of both ways counts. Where there is no such cycle, a shortest path takes
+    the place of that way.
     """
     cycle, _, reasons = _long_cycle(cells)
-    path = _way_round(cycle, start, end)
-    if not path:
-        if cycle:
-            reasons.append(END_OFF_CYCLE)
-        path = _shortest(cells, start, end)
+    ways = _ways_round(cycle, start, end)
+    if cycle and not ways:
+        reasons.append(END_OFF_CYCLE)
+    extended = [_extended(cells, way) for way in ways or [_shortest(cells, start, end)]]
+    return max(extended, key=len), cycle, reasons
+
+
+def _extended(cells: set[Cell], path: list[Cell]) -> list[Cell]:
+    """A path with all detours over two free cells taken that EXTEND finds."""
     links: Links = {cell: set() for cell in cells}
     for a, b in pairwise(path):
         links[a].add(b)
         links[b].add(a)
     _extend(links, path)
-    return _unrolled(links, start), reasons
+    return _unrolled(links, path[0])
 
 
 Links = dict[Cell, set[Cell]]
@@ -328,20 +335,18 @@ def _dominoes(near: list[Cell], cells: Collection[Cell]) -> Iterator[Loop]:
                         yield loop
 
 
-def _way_round(cycle: list[Cell], start: Cell, end: Cell) -> list[Cell]:
-    """The longest path from start to end that follows a cycle; each end on it or beside it."""
+def _ways_round(cycle: list[Cell], start: Cell, end: Cell) -> list[list[Cell]]:
+    """The paths from start to end that follow a cycle; each end is on it or beside it."""
     place = {cell: k for k, cell in enumerate(cycle)}
     n = len(cycle)
-    best: list[Cell] = []
+    ways = []
     for a in _landings(place, start):
         for b in _landings(place, end):
-            i, j = place[a], place[b]
-            there = [cycle[(i + k) % n] for k in range((j - i) % n + 1)]
-            back = [cycle[(i - k) % n] for k in range((i - j) % n + 1)]
-            way = max(there, back, key=len)
-            path = [*[start][: start != a], *way, *[end][: end != b]]
-            best = max(best, path, key=len)
-    return best
+            for step in (1, -1):
+                between = [cycle[(place[a] + step * k) % n] for k in range(n)]
+                way = between[: between.index(b) + 1]
+                ways.append([*[start][: start != a], *way, *[end][: end != b]])
+    return ways
 
 
 def _landings(place: dict[Cell, int], end: Cell) -> list[Cell]:
