@@ -142,7 +142,7 @@ def _long_cycle(cells: set[Cell]) -> tuple[list[Cell], int, list[str]]:
     for walk in boundaries:
         for before, cell, after in zip([walk[-1], *walk], walk, [*walk[1:], walk[0]], strict=False):
             links[cell] = {before, after}
-    nest = _Nest(links)
+    nest = Nest(links)
     n_cycles = len(nest.members)
     while nest.merge_a_leaf():
         pass
@@ -165,18 +165,18 @@ def square_free_factor(cells: set[Cell]) -> Links | None:
         return links
     number = {edge: k for k, edge in enumerate(edges)}
     rows = [[number[(min(c, n), max(c, n))] for n in beside(c) if n in cells] for c in order]
-    squares = [[number[(min(s), max(s))] for s in _sides(loop)] for loop in _squares(order, cells)]
     if min(map(len, rows)) < 2:
         return None
+    squares = [
+        [number[(min(side), max(side))] for side in _sides(_square(cell))]
+        for cell in order
+        if cells.issuperset(_square(cell))
+    ]
     upper = np.repeat([2, 3], [len(rows), len(squares)])
     lower = np.repeat([2, 0], [len(rows), len(squares)])
     rows += squares
     matrix = csr_array(
-        (
-            np.ones(sum(map(len, rows))),
-            np.concatenate(rows),
-            np.cumsum([0, *map(len, rows)]),
-        ),
+        (np.ones(sum(map(len, rows))), np.concatenate(rows), np.cumsum([0, *map(len, rows)])),
         shape=(len(rows), len(edges)),
     )
     found = milp(
@@ -185,7 +185,7 @@ def square_free_factor(cells: set[Cell]) -> Links | None:
         bounds=Bounds(0, 1),
         constraints=LinearConstraint(matrix, lower, upper),
     )
-    if found.x is None:
+    if found.status == 2:  # infeasible
         return None
     for k in np.flatnonzero(found.x > 0.5):
         a, b = edges[k]
@@ -194,7 +194,7 @@ def square_free_factor(cells: set[Cell]) -> Links | None:
     return links
 
 
-class _Nest:
+class Nest:
     """Disjoint cycles of a region, and which of them has which around it.
 
     No cell lies inside a unit square or two, so no operation changes what a cycle surrounds
@@ -207,7 +207,7 @@ class _Nest:
         self.home: dict[Cell, int] = {}
         self.members: dict[int, set[Cell]] = {}
         for first in sorted(links):
-            if first not in self.home:
+            if links[first] and first not in self.home:
                 number = len(self.members)
                 self.members[number] = set(_unrolled(links, first))
                 self.home.update(dict.fromkeys(self.members[number], number))
@@ -219,7 +219,7 @@ class _Nest:
         Half a step to the right of each cell no cell is met, only links that cross that line.
         """
         rows = defaultdict(list)
-        for cell in sorted(self.links):
+        for cell in sorted(self.home):
             rows[cell[1]].append(cell)
         around: dict[int, int] = {}
         for row in rows.values():
@@ -311,11 +311,17 @@ def _extend(links: Links, near: list[Cell]) -> list[tuple[Cell, Cell]]:
     return taken
 
 
+def _square(corner: Cell) -> Loop:
+    """The unit square with its lowest corner at a cell."""
+    x, y = corner
+    return [(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)]
+
+
 def _squares(near: list[Cell], cells: Collection[Cell]) -> Iterator[Loop]:
     """The unit squares with a corner in `near` and all corners in `cells`."""
     for x, y in near:
-        for i, j in ((x - 1, y - 1), (x - 1, y), (x, y - 1), (x, y)):
-            loop = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
+        for corner in ((x - 1, y - 1), (x - 1, y), (x, y - 1), (x, y)):
+            loop = _square(corner)
             if all(cell in cells for cell in loop):
                 yield loop
 
