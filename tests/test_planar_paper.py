@@ -307,3 +307,23 @@ def test_no_algorithm_beats_two_thirds_on_long_combs_with_the_boundary_cycle():
         shares.append((n_boundary + len(longest)) / mask.sum())
     assert shares == sorted(shares, reverse=True)
     assert 2 / 3 < shares[-1] < 0.69
+
+
+@pytest.mark.parametrize(
+    ("mask", "message"),
+    [
+        (np.ones((2, 2)), r"mask must be \(X, Y\) bool, got float64"),
+        (np.zeros((2, 2), bool), "mask must be one 4-connected region, got 0 cells"),
+        (np.eye(3, dtype=bool), "mask must be one 4-connected region, got 3 cells"),
+    ],
+)
+def test_faults_of_masks_are_named(mask, message):
+    with pytest.raises(ValueError, match=message):
+        zhang_liu_cycle(mask)
+    with pytest.raises(ValueError, match=message):
+        paper_path(mask, (0, 0), (1, 1))
+
+
+def test_ends_must_differ():
+    with pytest.raises(ValueError, match=r"start and end must differ, both are \(1, 1\)"):
+        paper_path(np.ones((4, 4), bool), (1, 1), (1, 1))

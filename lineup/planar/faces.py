@@ -25,6 +25,43 @@ def cell_set(mask: BoolArray) -> set[Cell]:
     return {(int(x), int(y)) for x, y in np.argwhere(mask)}
 
 
+def connected_cells(mask: BoolArray) -> set[Cell]:
+    """The cells (x, y) of a mask, which must be one 4-connected region."""
+    check_mask(mask)
+    cells = cell_set(mask)
+    if not cells or part_of(cells, min(cells)) != cells:
+        raise ValueError(
+            f"mask must be one 4-connected region, got {len(cells)} cells that are not"
+        )
+    return cells
+
+
+def check_mask(mask: BoolArray) -> None:
+    """Raise a ValueError if a mask is not (X, Y) bool."""
+    if mask.ndim != 2 or mask.dtype != bool:
+        raise ValueError(f"mask must be (X, Y) bool, got {mask.dtype} of shape {mask.shape}")
+
+
+def check_ends(mask: BoolArray, start: Cell, end: Cell) -> None:
+    """Raise a ValueError if the ends are not two different cells of a mask."""
+    for name, cell in (("start", start), ("end", end)):
+        in_grid = len(cell) == 2 and all(0 <= c < n for c, n in zip(cell, mask.shape, strict=True))
+        if not in_grid or not mask[tuple(cell)]:
+            raise ValueError(f"{name} must be a cell (x, y) of the region, got {tuple(cell)}")
+    if tuple(start) == tuple(end):
+        raise ValueError(f"start and end must differ, both are {tuple(start)}")
+
+
+def part_of(cells: set[Cell], first: Cell) -> set[Cell]:
+    """The 4-connected part of `cells` around one of them."""
+    part, todo = {first}, [first]
+    while todo:
+        ahead = [c for c in beside(todo.pop()) if c in cells and c not in part]
+        part.update(ahead)
+        todo += ahead
+    return part
+
+
 def beside(cell: Cell) -> Iterator[Cell]:
     """The four cells that share a side with `cell`, inside or not."""
     x, y = cell

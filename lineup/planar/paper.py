@@ -1,8 +1,9 @@
 """The paper's long planar path, as written (Section 4.1, Algorithm 2, Figures 5 to 7).
 
 Boundary cycle by marching, interior path by Zhang and Liu, merged into one. Each assumption that
-a region breaks is named by a reason code; what can still be done is done, what cannot leaves the
-path empty. Nothing here falls back on another planner.
+a region breaks is named by a reason code. Where no path can come of it the path is empty; where
+only the interior has no cycle of Zhang and Liu, a shortest path with all detours that EXTEND
+finds takes the place of theirs.
 """
 
 from __future__ import annotations
@@ -14,7 +15,16 @@ from scipy import ndimage
 
 from .._record import record
 from ..grid import BoolArray, IntArray
-from .faces import Cell, beside, cell_set, is_cycle, outer_walk
+from .faces import (
+    Cell,
+    beside,
+    cell_set,
+    check_ends,
+    connected_cells,
+    is_cycle,
+    outer_walk,
+    part_of,
+)
 from .zhang_liu import REASONS as INTERIOR_REASONS
 from .zhang_liu import interior_path
 
@@ -84,6 +94,11 @@ def paper_path(mask: BoolArray, start: Cell, end: Cell, seed: int = 0) -> PaperP
     start, end : (x, y)
         Two different cells of it.
 
+    Raises
+    ------
+    ValueError
+        If the mask or an end is not as said.
+
     Examples
     --------
     >>> import numpy as np
@@ -92,7 +107,8 @@ def paper_path(mask: BoolArray, start: Cell, end: Cell, seed: int = 0) -> PaperP
     >>> len(path), len(path.boundary), len(path.interior), path.reasons
     (20, 14, 6, ())
     """
-    cells, removed = _without_dangling(mask)
+    cells, removed = _without_dangling(connected_cells(mask), mask)
+    check_ends(mask, start, end)
     if not cells:
         return _failed(removed, DANGLING_ATE_REGION)
     boundary = outer_walk(cells)
@@ -102,7 +118,7 @@ def paper_path(mask: BoolArray, start: Cell, end: Cell, seed: int = 0) -> PaperP
     if not inner:
         return _failed(removed, NO_INTERIOR, boundary=boundary)
     home = start if start in inner else end if end in inner else min(inner)
-    part = _part_of(inner, home)
+    part = part_of(inner, home)
     reasons = [INTERIOR_DISCONNECTED] if part != inner else []
     if not {start, end} <= inner:
         return _failed(removed, *reasons, END_NOT_INTERIOR, boundary=boundary)
@@ -123,14 +139,14 @@ def paper_path(mask: BoolArray, start: Cell, end: Cell, seed: int = 0) -> PaperP
     )
 
 
-def _without_dangling(mask: BoolArray) -> tuple[set[Cell], list[Cell]]:
+def _without_dangling(cells: set[Cell], mask: BoolArray) -> tuple[set[Cell], list[Cell]]:
     """The cells that stay when dangling voxels go, over and over, and those that go.
 
     Both neighbours of a voxel on the walk round the boundary are boundary voxels. So a dangling
     one is where that walk turns back: it has one neighbour at most in the whole region. A spur
     into a hole has no part in the outermost boundary and stays.
     """
-    cells, removed = cell_set(mask), []
+    cells, removed = set(cells), []
     holes = cell_set(ndimage.binary_fill_holes(mask, structure=np.ones((3, 3), bool)) & ~mask)
     todo = sorted(cells)
     while todo:
@@ -143,16 +159,6 @@ def _without_dangling(mask: BoolArray) -> tuple[set[Cell], list[Cell]]:
         removed += dangling
         todo = sorted({other for cell in dangling for other in beside(cell)} & cells)
     return cells, removed
-
-
-def _part_of(cells: set[Cell], first: Cell) -> set[Cell]:
-    """The 4-connected part of `cells` around one of them."""
-    part, todo = {first}, [first]
-    while todo:
-        ahead = [c for c in beside(todo.pop()) if c in cells and c not in part]
-        part.update(ahead)
-        todo += ahead
-    return part
 
 
 def _merged(cycle: list[Cell], path: list[Cell], rng: np.random.Generator) -> list[Cell]:

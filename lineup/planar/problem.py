@@ -12,7 +12,7 @@ from .._record import record
 from ..grid import BoolArray, IntArray, components
 from .blocks import Region, chain, chain_limit, region
 from .exact import exact_path
-from .faces import Cell
+from .faces import Cell, check_ends, check_mask
 from .long import NO_WISHES, long_path
 from .paper import paper_path
 
@@ -74,7 +74,7 @@ def planar_path(
     seed : int
         The same region, ends, seed and options give the same path.
     options
-        Keyword options of the method. Those of ``"long"``: `restarts` (24) and `sweeps` (300),
+        Keyword options of the method. Those of ``"long"``: `restarts` (8) and `sweeps` (300),
         see `planar.long_path`. That of ``"exact"``: `limit` (60.0), deterministic time in
         about seconds.
 
@@ -106,14 +106,8 @@ def planar_path(
 
 def _part(mask: BoolArray, start: Cell, end: Cell) -> BoolArray:
     """The part of the region around `start`, after checks."""
-    if mask.ndim != 2 or mask.dtype != bool:
-        raise ValueError(f"mask must be (X, Y) bool, got {mask.dtype} of shape {mask.shape}")
-    for name, cell in (("start", start), ("end", end)):
-        in_grid = len(cell) == 2 and all(0 <= c < n for c, n in zip(cell, mask.shape, strict=True))
-        if not in_grid or not mask[tuple(cell)]:
-            raise ValueError(f"{name} must be a cell (x, y) of the region, got {tuple(cell)}")
-    if tuple(start) == tuple(end):
-        raise ValueError(f"start and end must differ, both are {tuple(start)}")
+    check_mask(mask)
+    check_ends(mask, start, end)
     label, _ = components(mask[:, :, None])
     part: BoolArray = label[:, :, 0] == label[(*start, 0)]
     return part
@@ -129,7 +123,7 @@ def _paper(mask: BoolArray, start: Cell, end: Cell, seed: int) -> PlanarPath:
 
 
 def _long(
-    mask: BoolArray, start: Cell, end: Cell, seed: int, *, restarts: int = 24, sweeps: int = 300
+    mask: BoolArray, start: Cell, end: Cell, seed: int, *, restarts: int = 8, sweeps: int = 300
 ) -> PlanarPath:
     flat, first, last = _flat(mask, start, end)
     rng = np.random.default_rng(seed)

@@ -33,7 +33,7 @@ from scipy.sparse import csr_array
 
 from .._record import record
 from ..grid import BoolArray, IntArray
-from .faces import Cell, beside, cell_set, face_walks, is_cycle
+from .faces import Cell, beside, connected_cells, face_walks, is_cycle
 
 NOT_REGULAR = "interior-not-regular"
 NO_2_FACTOR = "no-2-factor"
@@ -46,6 +46,9 @@ REASONS: dict[str, str] = {
     MERGING_STUCK: "no operation merges the cycles that are left",
     END_OFF_CYCLE: "an end is neither on the interior cycle nor beside it",
 }
+
+INFEASIBLE = 2
+"""What `scipy.optimize.milp` reports when there is no solution."""
 
 Loop = list[Cell]
 
@@ -84,7 +87,15 @@ class LongCycle:
 
 
 def zhang_liu_cycle(mask: BoolArray) -> LongCycle:
-    """A long cycle in a connected region by merging the cycles of a 2-factor.
+    """A long cycle in a 4-connected region, (X, Y) bool, by merging the cycles of a 2-factor.
+
+    On a region of n cells that meets the hypotheses it has 5n/6 + 2 cells at least, unless F is
+    one cycle of fewer than 12 cells.
+
+    Raises
+    ------
+    ValueError
+        If the mask is not one 4-connected region.
 
     Examples
     --------
@@ -94,7 +105,7 @@ def zhang_liu_cycle(mask: BoolArray) -> LongCycle:
     >>> len(cycle), cycle.reasons
     (40, ())
     """
-    cycle, n_cycles, reasons = _long_cycle(cell_set(mask))
+    cycle, n_cycles, reasons = _long_cycle(connected_cells(mask))
     return LongCycle(np.array(cycle, np.int32).reshape(-1, 2), n_cycles, tuple(reasons))
 
 
@@ -185,9 +196,9 @@ def square_free_factor(cells: set[Cell]) -> Links | None:
         bounds=Bounds(0, 1),
         constraints=LinearConstraint(matrix, lower, upper),
     )
-    if found.status == 2:  # infeasible
+    if found.status == INFEASIBLE:
         return None
-    for k in np.flatnonzero(found.x > 0.5):
+    for k in np.flatnonzero(np.asarray(found.x) > 0.5):
         a, b = edges[k]
         links[a].add(b)
         links[b].add(a)
