@@ -4,7 +4,7 @@ import itertools
 
 import networkx as nx
 import numpy as np
-from scipy import optimize
+from scipy import ndimage, optimize
 
 import lineup as lu
 from lineup import grid, kinematics
@@ -266,3 +266,46 @@ def swept_points(voxels, states, before, reach):
             elif d != f:
                 swept |= lattice_quadrant(pivot, d, f, reach) - {pivot}
     return swept
+
+
+def outermost_boundary(mask):
+    """Boundary voxels of a layer by definition: an 8-neighbour is missing and not in a hole."""
+    box = np.ones((3, 3), bool)
+    padded = np.pad(mask, 1)
+    outside = ~ndimage.binary_fill_holes(padded, structure=box)
+    return (ndimage.binary_dilation(outside, box) & padded)[1:-1, 1:-1]
+
+
+def without_dangling(mask):
+    """A layer without its dangling voxels, removed one by one, and the removed ones."""
+    mask, removed = mask.copy(), []
+    while True:
+        boundary = outermost_boundary(mask)
+        padded = np.pad(boundary, 1).astype(int)
+        near = padded[2:, 1:-1] + padded[:-2, 1:-1] + padded[1:-1, 2:] + padded[1:-1, :-2]
+        dangling = np.argwhere(boundary & (near < 2))
+        if not len(dangling):
+            return mask, removed
+        mask[tuple(dangling[-1])] = False
+        removed.append(dangling[-1])
+
+
+def two_factors(graph):
+    """All edge sets that give every node of a graph degree two, by trying all."""
+
+    def complete(chosen, left, lacking):
+        if not lacking:
+            yield chosen
+            return
+        node = min(lacking)
+        open_edges = [edge for edge in left if node in edge]
+        for picked in itertools.combinations(open_edges, lacking[node]):
+            rest = dict(lacking)
+            for end in itertools.chain(*picked):
+                rest[end] = rest.get(end, 0) - 1
+            if min(rest.values()) >= 0:
+                rest = {other: n for other, n in rest.items() if n}
+                yield from complete([*chosen, *picked], left - set(open_edges), rest)
+
+    edges = {tuple(sorted(edge)) for edge in graph.edges}
+    yield from complete([], edges, dict.fromkeys(graph, 2))

@@ -8,9 +8,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles import heaviest_path_between
+from regions import draw_ends, grown_regions
 
+import lineup as lu
 from lineup import planar
 from lineup.planar import _kernels as kernels
+from lineup.planar import paper
 
 
 @st.composite
@@ -175,3 +178,64 @@ def test_even_squares_are_filled(n):
         region, start, start + 1, planar.NO_WISHES, 4, 100, np.random.default_rng(0)
     )
     assert len(path) == limit == inside.sum()
+
+
+ONE_CELL_APART = np.array([[True, False, True]])
+
+
+@pytest.mark.parametrize("method", ["long", "paper"])
+@settings(max_examples=60, deadline=None)
+@given(grown_regions(40), st.data())
+def test_planar_paths_keep_their_bound(method, mask, data):
+    start, end = draw_ends(data, mask)
+    found = lu.planar_path(mask, start, end, method=method)
+    assert found.method == method
+    assert len(found) <= found.bound <= mask.sum()
+    assert found.optimal == (len(found) == found.bound)
+    # Cells of a path alternate in colour.
+    assert not len(found) or (len(found) + sum(start) + sum(end)) % 2
+    if method == "long":
+        assert found.reason == ("optimal" if found.optimal else "searched")
+        assert tuple(found.cells[0]) == start
+        assert tuple(found.cells[-1]) == end
+    if not len(found):
+        assert set(found.reason.split(", ")) <= set(paper.REASONS)
+
+
+@pytest.mark.parametrize("method", lu.PLANAR_METHODS)
+def test_no_path_is_a_result(method):
+    found = lu.planar_path(ONE_CELL_APART, (0, 0), (0, 2), method=method)
+    assert (len(found), found.bound, found.optimal) == (0, 0, True)
+    assert found.reason == "ends not connected"
+
+
+def test_cells_of_other_parts_do_not_matter():
+    mask = np.ones((4, 9), bool)
+    mask[:, 4] = False
+    for method in ("long", "paper"):
+        both = lu.planar_path(mask, (1, 1), (1, 2), method=method)
+        alone = lu.planar_path(mask[:, :4], (1, 1), (1, 2), method=method)
+        assert np.array_equal(both.cells, alone.cells)
+        assert both.bound == alone.bound == 16
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"mask": np.ones((2, 2, 1), bool)}, r"mask must be \(X, Y\) bool, got bool of shape"),
+        ({"mask": np.ones((2, 2))}, r"mask must be \(X, Y\) bool, got float64"),
+        ({"start": (0, 3)}, r"start must be a cell \(x, y\) of the region, got \(0, 3\)"),
+        ({"end": (-1, 0)}, r"end must be a cell .* got \(-1, 0\)"),
+        ({"end": (0, 0, 0)}, r"end must be a cell .* got \(0, 0, 0\)"),
+        ({"end": (0, 1)}, r"end must be a cell .* got \(0, 1\)"),
+        ({"end": (0, 0)}, r"start and end must differ, both are \(0, 0\)"),
+        ({"method": "fast"}, r"unknown planar method 'fast'; known: "),
+        ({"effort": 3}, r"planar method 'long' has no option 'effort'"),
+        ({"sweeps": 0}, r"sweeps must be positive, got 0"),
+        ({"seed": -1}, r"seed must be at least 0, got -1"),
+    ],
+)
+def test_planar_faults_are_named(change, message):
+    problem = {"mask": ONE_CELL_APART, "start": (0, 0), "end": (0, 2)}
+    with pytest.raises(ValueError, match=message):
+        lu.planar_path(**(problem | change))
