@@ -13,6 +13,7 @@ import numpy as np
 
 from ._options import checked
 from .linking import Effort, assembled, layers, linked, promising_plan
+from .refinement import REFINED
 from .solid import VoxelPath, VoxelSolid
 from .spatial import free3d, nested, ufree
 
@@ -41,7 +42,8 @@ def layered_path(
     Raises
     ------
     ValueError
-        If the method or an option is unknown or out of range, or the solid is one voxel.
+        If the method or an option is unknown or out of range, or the solid is one voxel and the
+        method does not refine it.
 
     Examples
     --------
@@ -51,7 +53,7 @@ def layered_path(
     (24, [[1, 0], [0, 0]])
     """
     checked(PATH_METHODS, method, options, "path method")
-    if solid.size < 2:
+    if solid.size < 2 and method not in REFINED:
         raise ValueError("a path needs at least two voxels, the solid has 1")
     return PATH_METHODS[method](solid, seed, **options)
 
@@ -121,5 +123,6 @@ PATH_METHODS: dict[str, Callable[..., VoxelPath]] = {
     "nested": _nested,
     "free3d": free3d,
     "ufree": ufree,
+    **REFINED,
 }
 """The path methods by name: functions of a solid, a seed and keyword-only options."""
