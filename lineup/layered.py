@@ -33,6 +33,8 @@ def layered_path(
         Keyword options of the method. Those of ``"layered"``: `starts` (4), spanning trees and
         MSPs tried; `sweeps` (100), length of each planar search, see `planar.long_path`;
         `both_ends_on_top` (False), put both ends in one node, as high up as can be.
+        ``"refined"`` and ``"refined4"`` have none: they visit all of ``refine(solid, 2)``, and
+        all of ``refine(solid, 4)`` without a U.
 
     Returns
     -------
