@@ -19,7 +19,7 @@ from lineup.storage import write_whole
 app = typer.Typer(add_completion=False, help=__doc__)
 
 SOLIDS = ["ball", "duck", "decocube"]
-PEER_SIZES = [100, 400, 1600]
+PEER_SIZES = [150, 400, 1600]
 GROWTH_SIZES = [1000, 3000, 10_000, 30_000, 100_000]
 
 Sizes = Annotated[list[int], typer.Option("--voxels", help="Voxels of a solid; repeat for more.")]
@@ -141,7 +141,7 @@ def measured(solid: lu.VoxelSolid, method: str) -> dict[str, Any]:
         "source": solid.source["kind"],
         "voxels": solid.size,
         "method": method,
-        "path": 0,
+        "path": pd.NA,
         "coverage": np.nan,
         "surface": np.nan,
         "bound": lu.path_bound(solid) / solid.size,
@@ -183,8 +183,14 @@ def write(table: pd.DataFrame, folder: Path, name: str) -> None:
     """NAME.csv with every digit, NAME.md to read."""
     folder.mkdir(parents=True, exist_ok=True)
     write_whole(folder / f"{name}.csv", table.to_csv(index=False))
-    cells = table.map(lambda v: v if not isinstance(v, float) else f"{v:.4g}".replace("nan", "–"))
+    cells = table.map(printed)
     write_whole(folder / f"{name}.md", cells.to_markdown(index=False, disable_numparse=True) + "\n")
+
+
+def printed(value: object) -> str:
+    if pd.isna(value):
+        return "–"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
 def draw(table: pd.DataFrame, fits: pd.DataFrame, file: Path) -> None:
@@ -196,9 +202,9 @@ def draw(table: pd.DataFrame, fits: pd.DataFrame, file: Path) -> None:
         label = f"{method}: n^{slopes[method]:.2f}"
         axes.plot(runs["voxels"], runs["seconds"], marker="o", label=label)
     n = np.array([table["voxels"].min(), table["voxels"].max()])
-    for power in (1, 2):
+    for power, style in ((1, "--"), (2, ":")):
         line = table["seconds"].min() * (n / n[0]) ** power
-        axes.plot(n, line, "--", color="0.6", label=f"slope {power}")
+        axes.plot(n, line, style, color="0.6", label=f"as n^{power}")
     axes.legend()
     axes.grid(alpha=0.3)
     figure.savefig(file, dpi=120)

@@ -100,10 +100,10 @@ def voxel_graph(voxels: NDArray[Any]) -> nx.Graph:
 def unbroken(tour: NDArray[Any]) -> Found:
     """The longest part of a closed tour without a step between voxels apart."""
     apart = np.abs(np.roll(tour, -1, axis=0) - tour).sum(axis=1) > 1
-    breaks = np.flatnonzero(apart)
-    if not len(breaks):
-        return tour, "no break"
-    tour = np.roll(tour, -breaks[-1] - 1, axis=0)
-    ends = [0, *(np.sort((breaks - breaks[-1] - 1) % len(tour)) + 1).tolist()]
+    jumps = np.flatnonzero(apart)
+    if not len(jumps):
+        return tour, "jumps: 0"
+    tour = np.roll(tour, -jumps[-1] - 1, axis=0)
+    ends = [0, *(np.sort((jumps - jumps[-1] - 1) % len(tour)) + 1).tolist()]
     first, stop = max(pairwise(ends), key=lambda part: part[1] - part[0])
-    return tour[first:stop], f"{len(breaks)} breaks"
+    return tour[first:stop], f"jumps: {len(jumps)}"
