@@ -18,6 +18,7 @@ from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 from . import grid
 from ._jit import kernel
 from .solid import VoxelPath, VoxelSolid
+from .visits import visits_of
 
 Links = NDArray[np.int8]
 """(X, Y, Z, 2): the two directions in which the cycle leaves each voxel."""
@@ -86,7 +87,8 @@ def refined_path(solid: VoxelSolid, seed: int) -> VoxelPath:
         corner = 2 * net.voxels[voxel] + _SQUARE_CORNER[side] + (0, 0, height)
         _join(links, corner, _SQUARE_EDGE[side], directions[side])
     voxels = _opened(links, 8 * solid.size)
-    return VoxelPath(voxels, visits=_visits(voxels), refinement=2, method="refined")
+    visits = visits_of(voxels, _pieces(voxels))
+    return VoxelPath(voxels, visits=visits, refinement=2, method="refined")
 
 
 def refined4_path(solid: VoxelSolid, seed: int) -> VoxelPath:
@@ -237,22 +239,19 @@ def _walk(
     return voxels
 
 
-def _visits(voxels: grid.IntArray) -> grid.IntArray:
-    """The visits of `refined_path`: each way to another layer goes along two steps, there and back.
+def _pieces(voxels: grid.IntArray) -> grid.IntArray:
+    """The piece of each step of `refined_path`: every excursion leaves and comes back on one link.
 
-    `visits_of` knows the path alone, and where two links stand side by side takes the way through
-    one and back through the other for an excursion.
+    A link is two steps side by side between two squares, one above the other.
     """
     climbs = np.flatnonzero(np.diff(voxels[:, 2])) + 1
     x, y = voxels[climbs, 0] // 2, voxels[climbs, 1] // 2
     lower = np.minimum(voxels[climbs - 1, 2], voxels[climbs, 2])
-    place = np.ravel_multi_index((x, y, lower), tuple(voxels.max(axis=0) + 1))
-    _, first, number = np.unique(place, return_index=True, return_inverse=True)
-    there = first[number]
-    is_back = there < np.arange(len(climbs))
-    depths = np.append(0, np.cumsum(np.where(is_back, -1, 1)))
-    pieces = np.append(0, np.cumsum(~is_back)).tolist()
-    for k in np.flatnonzero(is_back).tolist():
-        pieces[k + 1] = pieces[there[k]]
-    starts, stops = np.append(0, climbs), np.append(climbs, len(voxels))
-    return np.stack([starts, stops, pieces, depths], axis=1).astype(np.int32)
+    link = np.ravel_multi_index((x, y, lower), tuple(voxels.max(axis=0) + 1))
+    _, first, number = np.unique(link, return_index=True, return_inverse=True)
+    left = first[number]
+    is_back = left < np.arange(len(climbs))
+    runs = np.append(0, np.cumsum(~is_back))
+    for k in np.flatnonzero(is_back):
+        runs[k + 1] = runs[left[k]]
+    return np.repeat(runs, np.diff(climbs, prepend=0, append=len(voxels))).astype(np.int32)
