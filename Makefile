@@ -32,6 +32,10 @@ notebooks: $(STAMP)  ## Execute every notebook again from its .py half
 	env -u LINEUP_MODELS $(BIN)/jupyter nbconvert --log-level WARN --to notebook --inplace --execute \
 	  --ExecutePreprocessor.record_timing=False notebooks/*.ipynb
 
+benchmarks: $(STAMP)  ## Our paths beside those of other tools, and how their time grows: results/
+	$(BIN)/python benchmarks/paths.py peers
+	$(BIN)/python benchmarks/paths.py growth
+
 setup: $(STAMP)  ## The virtual environment alone
 
 clean:  ## Remove results and caches; the virtual environment stays
@@ -54,4 +58,4 @@ $(STAMP): pyproject.toml constraints.txt
 	@$(BIN)/python -c 'import lineup as lu; lu.lineup(["duck"], blocks=40)'
 	@touch $@
 
-.PHONY: reproduce test lint lab notebooks setup clean help
+.PHONY: reproduce test lint lab notebooks benchmarks setup clean help

@@ -22,6 +22,7 @@ _HOME = {
     "model": "catalog",
     "reeb_graph": "reeb",
     "traverse": "reeb",
+    "refine": "refinement",
     "layered_path": "layered",
     "PATH_METHODS": "layered",
     "planar_path": "planar",

@@ -13,6 +13,7 @@ import numpy as np
 
 from ._options import checked
 from .linking import Effort, assembled, layers, linked, promising_plan
+from .refinement import REFINED
 from .solid import VoxelPath, VoxelSolid
 from .spatial import free3d, nested, ufree
 
@@ -32,6 +33,8 @@ def layered_path(
         Keyword options of the method. Those of ``"layered"``: `starts` (4), spanning trees and
         MSPs tried; `sweeps` (100), length of each planar search, see `planar.long_path`;
         `both_ends_on_top` (False), put both ends in one node, as high up as can be.
+        ``"refined"`` and ``"refined4"`` have none: they visit all of ``refine(solid, 2)``, and
+        all of ``refine(solid, 4)`` without a U.
 
     Returns
     -------
@@ -41,7 +44,8 @@ def layered_path(
     Raises
     ------
     ValueError
-        If the method or an option is unknown or out of range, or the solid is one voxel.
+        If the method or an option is unknown or out of range, or the solid is one voxel and the
+        method does not refine it.
 
     Examples
     --------
@@ -51,7 +55,7 @@ def layered_path(
     (24, [[1, 0], [0, 0]])
     """
     checked(PATH_METHODS, method, options, "path method")
-    if solid.size < 2:
+    if solid.size < 2 and method not in REFINED:
         raise ValueError("a path needs at least two voxels, the solid has 1")
     return PATH_METHODS[method](solid, seed, **options)
 
@@ -121,5 +125,6 @@ PATH_METHODS: dict[str, Callable[..., VoxelPath]] = {
     "nested": _nested,
     "free3d": free3d,
     "ufree": ufree,
+    **REFINED,
 }
 """The path methods by name: functions of a solid, a seed and keyword-only options."""

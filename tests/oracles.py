@@ -309,3 +309,20 @@ def two_factors(graph):
 
     edges = {tuple(sorted(edge)) for edge in graph.edges}
     yield from complete([], edges, dict.fromkeys(graph, 2))
+
+
+def edges_on_squares(edges):
+    """How many of these lattice edges lie on each unit square: 4 squares contain an edge.
+
+    An edge is a frozenset of two positions; a square is its lowest corner and its normal axis.
+    """
+    count = {}
+    for edge in edges:
+        low, high = sorted(edge)
+        along = next(axis for axis in range(3) if low[axis] != high[axis])
+        for other in {0, 1, 2} - {along}:
+            below = tuple(c - (axis == other) for axis, c in enumerate(low))
+            for corner in (low, below):
+                square = corner, 3 - along - other
+                count[square] = count.get(square, 0) + 1
+    return count

@@ -1,0 +1,107 @@
+"""The benchmarks run, on tiny solids, and what they tell is true."""
+
+import sys
+from pathlib import Path
+
+import networkx as nx
+import numpy as np
+import pandas as pd
+import pytest
+from oracles import longest_path, voxel_graph
+from typer.testing import CliRunner
+
+import lineup as lu
+
+sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))
+
+import paths
+import peers
+
+
+def run(*arguments):
+    result = CliRunner().invoke(paths.app, [str(a) for a in arguments])
+    assert result.exit_code == 0, result.output
+    return result.output
+
+
+def test_peers_on_tiny_solids(tmp_path):
+    methods = ["layered", "refined", *peers.PEERS]
+    chosen = [word for method in methods for word in ("--method", method)]
+    run("peers", "--solid", "ball", "--voxels", 40, "--out", tmp_path, *chosen)
+    table = pd.read_csv(tmp_path / "paths.csv").set_index("method")
+    assert sorted(table.index) == sorted(methods)
+    assert not table["note"].fillna("").str.contains("refused").any()
+    ran = table[table["path"] > 0]
+    assert {"layered", "refined", "networkx depth-first", "networkx tour"} <= set(ran.index)
+    assert (ran["coverage"] <= ran["bound"]).all()
+    assert ran.loc["refined", ["coverage", "surface"]].tolist() == [1, 1]
+    assert ran.loc["layered", "seconds_to_layered"] == 1
+    assert "| networkx tour" in (tmp_path / "paths.md").read_text()
+
+
+def test_growth_on_tiny_solids(tmp_path):
+    run("growth", "--voxels", 8, "--voxels", 40, "--method", "refined", "--out", tmp_path)
+    table = pd.read_csv(tmp_path / "growth.csv")
+    assert (table["visited"] == 8 * table["voxels"]).all()
+    assert len(table) == 2
+    assert (tmp_path / "growth.png").stat().st_size > 1000
+    assert pd.read_csv(tmp_path / "exponents.csv")["method"].tolist() == ["refined"]
+
+
+def test_a_slow_method_ends(tmp_path):
+    sizes = ["--voxels", 8, "--voxels", 40, "--voxels", 60]
+    run("growth", *sizes, "--method", "refined", "--limit", 0, "--out", tmp_path)
+    assert len(pd.read_csv(tmp_path / "growth.csv")) == 1
+
+
+def test_exponents_of_known_powers():
+    n = np.array([100, 1000, 10_000])
+    runs = [
+        pd.DataFrame({"method": f"n^{b}", "voxels": n, "seconds": 0.02 * (n / 100.0) ** b})
+        for b in (1, 2)
+    ]
+    fits = paths.exponents(pd.concat([*runs, pd.DataFrame({"method": ["quick"], "seconds": 1e-4})]))
+    assert fits["runs"].tolist() == [3, 3, 0]
+    np.testing.assert_allclose(fits["exponent"], [1, 2, np.nan], atol=1e-9)
+
+
+def test_unknown_methods_are_refused():
+    result = CliRunner().invoke(paths.app, ["growth", "--method", "LKH"])
+    assert result.exit_code == 2
+    assert "unknown method 'LKH'" in result.output
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_longest_unbroken_part_of_a_tour(seed):
+    """Against a plain walk around a tour of random breaks."""
+    rng = np.random.default_rng(seed)
+    gaps = rng.random(12) < rng.random()
+    tour = np.zeros((12, 3), int)
+    tour[1:, 0] = np.cumsum(1 + gaps)[:-1]
+    part, _ = peers.unbroken(tour)
+    n = len(tour)
+    apart = [np.abs(tour[(k + 1) % n] - tour[k]).sum() > 1 for k in range(n)]
+    longest = max(next((m + 1 for m in range(n) if apart[(k + m) % n]), n) for k in range(n))
+    assert len(part) == longest
+    assert (np.abs(np.diff(part, axis=0)).sum(axis=1) == 1).all()
+
+
+def test_peers_find_paths_and_cp_sat_the_longest():
+    pytest.importorskip("ortools")
+    occupancy = np.ones((3, 3, 2), bool)
+    occupancy[[0, 2], [0, 0], 1] = False
+    occupancy[1, 1] = False
+    solid = lu.VoxelSolid(occupancy)
+    graph = voxel_graph(occupancy)
+    longest, note = peers.cp_sat(solid)
+    assert note == "proved longest"
+    assert len(longest) == longest_path(graph)
+    for peer in (peers.cp_sat, peers.depth_first, peers.tour_search):
+        found = [tuple(v) for v in peer(solid)[0].tolist()]
+        assert nx.is_simple_path(graph, found)
+        assert len(found) <= len(longest)
+
+
+@pytest.mark.parametrize("voxels", [8, 40, 1000, 30_000])
+def test_balls_have_about_the_size_asked_for(voxels):
+    assert 0.7 * voxels <= paths.solid_of("ball", voxels).size <= voxels
