@@ -30,6 +30,7 @@ _HOME = {
     "fold": "folding",
     "FOLD_METHODS": "folding",
     "trim": "trimming",
+    "TRIM_METHODS": "trimming",
     "save": "storage",
     "load": "storage",
     "lineup": "pipeline",

@@ -204,7 +204,7 @@ def test_swept_cells_are_those_of_the_point_sets(occupancy, seed):
     solid = lu.VoxelSolid(occupancy)
     grown = Grown(solid, layered_paths(solid, 0, starts=1)[0].voxels, seed)
     grown.change()
-    _moves.contract_all(grown.grid, grown.fold, np.zeros(len(grown.body.solid), bool), 6)
+    _moves.contract_all(grown.grid, grown.fold, np.zeros(len(grown.body.solid), bool), 6, 2)
     off_path = np.flatnonzero(grown.body.solid & (grown.fold.joint < 0))
     reach = max(occupancy.shape)
     for k in range(0, len(grown.states), max(1, len(grown.states) // 5)):
@@ -220,11 +220,11 @@ def test_contraction_keeps_what_it_must_and_stops_at_the_length():
     keep = np.pad(grid.surface(solid.occupancy), 1).ravel()
     kept = keep & (grown.fold.joint >= 0)
     n = len(grown.voxels)
-    _moves.contract_all(grown.grid, grown.fold, keep, n - 4)
+    _moves.contract_all(grown.grid, grown.fold, keep, n - 4, 2)
     grown.check(solid)
     assert n - 4 <= len(grown.voxels) < n
     assert (grown.fold.joint[kept] >= 0).all()
-    _moves.contract_all(grown.grid, grown.fold, np.zeros_like(keep), 2)
+    _moves.contract_all(grown.grid, grown.fold, np.zeros_like(keep), 2, 2)
     grown.check(solid)
     assert len(grown.voxels) < n // 2
 

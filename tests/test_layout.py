@@ -29,7 +29,7 @@ ORDER = [
         "judging",
     ),
     *("meshes", "implicit", "shapes", "sampling", "voxelization", "catalog"),
-    *("visits", "reeb", "planar", "linking", "layered", "bounds", "contraction"),
+    *("visits", "reeb", "planar", "linking", "layered", "bounds", "subset_sums", "contraction"),
     *("motion", "folding", "trimming"),
     *("storage", "verification", "pipeline", "_sources", "engines", "sweep", "tables", "draw"),
     *("_progress", "cli"),
