@@ -34,6 +34,7 @@ _HOME = {
     "save": "storage",
     "load": "storage",
     "lineup": "pipeline",
+    "add": "pipeline",
 }
 
 __all__ = sorted(_HOME)

@@ -142,11 +142,13 @@ def _between(pairs: IntArray) -> NDArray[np.int64]:
     return np.concatenate([np.empty(0, np.int64), *steps])
 
 
-def contracted(path: VoxelPath, pairs: IntArray, how: str) -> VoxelPath:
-    """`path` without the voxels between disjoint pairs; its method says `how`."""
+def contracted(path: VoxelPath, pairs: IntArray, which: str) -> VoxelPath:
+    """`path` without the voxels between disjoint pairs; its method says `which` pairs they are."""
+    if not len(pairs):
+        return path
     stays = np.ones(len(path), bool)
     stays[_between(pairs)] = False
-    return _left(path, stays, how)
+    return _left(path, stays, f"{(~stays).sum()} voxels in pairs {which}")
 
 
 def without(path: VoxelPath, fate: Fate, kept: BoolArray) -> VoxelPath:

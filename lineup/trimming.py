@@ -187,10 +187,7 @@ def _paper(
         if isinstance(found, str):
             return Trimming(tuple(items), found)
         chosen = found
-    trimmed = [
-        contracted(path, pairs, f"{len(pairs)} contraction pairs {which}") if len(pairs) else path
-        for path, pairs in zip(items, chosen, strict=True)
-    ]
+    trimmed = [contracted(*cut, which) for cut in zip(items, chosen, strict=True)]
     return Trimming(tuple(trimmed), TRIMMED)
 
 

@@ -266,3 +266,51 @@ def swept_points(voxels, states, before, reach):
             elif d != f:
                 swept |= lattice_quadrant(pivot, d, f, reach) - {pivot}
     return swept
+
+
+def disjoint_subsets(pairs):
+    """All sets of pairs (i, j) of which each begins where the one before it ends, or later."""
+    subsets = [()]
+    for pair in sorted(map(tuple, pairs), key=lambda p: p[1]):
+        subsets += [(*s, pair) for s in subsets if not s or s[-1][1] <= pair[0]]
+    return subsets
+
+
+def contraction_outcomes(voxels, keep, layered):
+    """Every path that sequences of contractions lead to: {path: (voxels to keep lost, excursions)}.
+
+    One contraction at a time, each found anew on the path as it is then. What leaves the layer
+    of a layered path goes only if nothing of it is to be kept.
+    """
+    start = tuple(map(tuple, np.asarray(voxels).tolist()))
+    best, todo = {start: (0, 0)}, [start]
+    while todo:
+        path = max(todo, key=len)
+        todo.remove(path)
+        for i, j in itertools.combinations(range(len(path)), 2):
+            apart = np.abs(np.subtract(path[i], path[j]))
+            flat = len({v[2] for v in path[i : j + 1]}) == 1
+            n_kept = sum(bool(keep[v]) for v in path[i + 1 : j])
+            if j < i + 2 or apart.sum() != 1 or (layered and (apart[2] or (n_kept and not flat))):
+                continue
+            lost, n_excursions = best[path]
+            cost = (lost + n_kept, n_excursions + (layered and not flat))
+            after = path[: i + 1] + path[j:]
+            if after not in best:
+                todo.append(after)
+            best[after] = min(cost, best.get(after, cost))
+    return best
+
+
+def least_losses(voxels, keep, layered):
+    """{length: least (voxels to keep lost, voxels off the ends, excursions)}: all ways tried."""
+    n, best = len(voxels), {}
+    for a, b in itertools.product(range(0, n, 2), range(0, n, 2)):
+        middle = voxels[a : n - b]
+        if len(middle) < 2:
+            continue
+        off = int(keep[tuple(np.concatenate([voxels[:a], voxels[n - b :]]).T)].sum())
+        for path, (lost, n_excursions) in contraction_outcomes(middle, keep, layered).items():
+            cost = (off + lost, a + b, n_excursions)
+            best[len(path)] = min(cost, best.get(len(path), cost))
+    return best

@@ -56,7 +56,8 @@ class Grown:
             _moves.anneal(self.grid, self.body, fold, 10, 3.0, 0.1, _fold.NEVER, rng)
         else:
             length = int(rng.integers(2, fold.size[0] + 1))
-            _moves.contract_all(self.grid, fold, rng.random(len(self.body.solid)) < 0.3, length)
+            keep, longest = rng.random(len(self.body.solid)) < 0.3, 2 * int(rng.integers(1, 6))
+            _moves.contract_all(self.grid, fold, keep, length, longest)
 
     def snapshot(self):
         fold = self.fold
@@ -128,7 +129,7 @@ def test_rods_of_two_busy_ends_keep_clear_of_each_other(seed):
             _fold.load(grown.fold, path, states)
         length = int(grown.rng.integers(6, len(path) + 1))
         _moves.contract_all(
-            grown.grid, grown.fold, grown.rng.random(len(grown.body.solid)) < 0.3, length
+            grown.grid, grown.fold, grown.rng.random(len(grown.body.solid)) < 0.3, length, 2
         )
         _moves.anneal(grown.grid, grown.body, grown.fold, 4, 9.0, 9.0, _fold.NEVER, grown.rng)
         assert rod_fault(grown.voxels, grown.states) == ""
