@@ -82,7 +82,8 @@ def shortened_path(path: VoxelPath, length: int, keep: BoolArray) -> VoxelPath:
 
     Contraction pairs, excursions with nothing to keep and blocks at both ends may go. As few
     voxels to keep as possible are lost, then as few blocks off the ends as possible, then as few
-    excursions. A path that is not layered has pairs in all directions and no excursions.
+    excursions. A path that is not layered has pairs in all directions and no excursions; a
+    layered one stays layered unless a cut leads its MSP to one node twice.
 
     The subset-sum table is that of the whole path, if it has at most `MAX_ENTRIES`; a longer
     path is shortened in instalments, each at the least loss.
@@ -92,19 +93,35 @@ def shortened_path(path: VoxelPath, length: int, keep: BoolArray) -> VoxelPath:
     while (excess := int((fate == STAYS).sum()) - length) > 0:
         steps = np.flatnonzero(fate == STAYS)
         instalment = min(excess, 2 * max(1, MAX_ENTRIES // len(steps)))
-        voxels = path.voxels[steps]
-        fate[steps] = _least_loss(voxels, kept[steps], instalment, layered=len(path.visits) > 0)
+        pieces = pieces_of(path)
+        fate[steps] = _least_loss(
+            path.voxels[steps], None if pieces is None else pieces[steps], kept[steps], instalment
+        )
     return without(path, fate, kept)
 
 
-def _least_loss(voxels: IntArray, kept: BoolArray, excess: int, *, layered: bool) -> Fate:
+def pieces_of(path: VoxelPath) -> IntArray | None:
+    """The planar piece of each step, None if the path is not layered."""
+    if not len(path.visits):
+        return None
+    start, stop, piece, _ = path.visits.T
+    pieces: IntArray = np.repeat(piece, stop - start)
+    return pieces
+
+
+def _least_loss(voxels: IntArray, pieces: IntArray | None, kept: BoolArray, excess: int) -> Fate:
     """How each step goes if `excess` of them must.
 
     Nothing is gained by contracting again and again: a pair that shows only after a contraction
     is a pair of higher index before it.
     """
-    pairs = _adjacent_steps(voxels, grid.DIRECTIONS[[0, 1, 3, 4]] if layered else grid.DIRECTIONS)
-    leaves = _leaves_layer(voxels, pairs) & layered
+    if pieces is None:
+        pairs = _adjacent_steps(voxels, grid.DIRECTIONS)
+        leaves = np.zeros(len(pairs), bool)
+    else:
+        pairs = _adjacent_steps(voxels, grid.DIRECTIONS[[0, 1, 3, 4]])
+        pairs = pairs[pieces[pairs[:, 0]] == pieces[pairs[:, 1]]]
+        leaves = _leaves_layer(voxels, pairs)
     n_kept = _n_between(kept, pairs)
     fate = np.zeros(len(voxels), np.int8)
     simple = of_index_2(pairs[~leaves & (n_kept == 0)], excess // 2)
@@ -160,15 +177,27 @@ def without(path: VoxelPath, fate: Fate, kept: BoolArray) -> VoxelPath:
 
 
 def _left(path: VoxelPath, stays: BoolArray, how: str) -> VoxelPath:
-    voxels = path.voxels[stays]
     dropped = np.concatenate([path.dropped, path.voxels[~stays]])
     return replace(
         path,
-        voxels=voxels,
-        visits=visits_of(voxels) if len(path.visits) else path.visits,
+        voxels=path.voxels[stays],
+        visits=_visits(path, stays),
         dropped=dropped[np.lexsort(dropped.T[::-1])],
         method=f"{path.method}, trimmed by {how}",
     )
+
+
+def _visits(path: VoxelPath, stays: BoolArray) -> IntArray:
+    """The visits of the steps that stay; none if two pieces of the MSP are in one node."""
+    pieces = pieces_of(path)
+    if pieces is None:
+        return path.visits
+    visits = visits_of(path.voxels[stays], pieces[stays])
+    node, _ = grid.layer_components(occupancy_of(path))
+    on_msp = visits[visits[:, 3] == 0]
+    nodes = node[tuple(path.voxels[stays][on_msp[:, 0]].T)]
+    layered = len(np.unique(nodes)) == len(np.unique(on_msp[:, 2]))
+    return visits if layered else visits[:0]
 
 
 def occupancy_of(path: VoxelPath) -> BoolArray:

@@ -276,11 +276,12 @@ def disjoint_subsets(pairs):
     return subsets
 
 
-def contraction_outcomes(voxels, keep, layered):
+def contraction_outcomes(voxels, keep, piece=None):
     """Every path that sequences of contractions lead to: {path: (voxels to keep lost, excursions)}.
 
-    One contraction at a time, each found anew on the path as it is then. What leaves the layer
-    of a layered path goes only if nothing of it is to be kept.
+    One contraction at a time, each found anew on the path as it is then. `piece` names the planar
+    piece of each voxel of a layered path: a contraction begins and ends in one piece, and what
+    leaves its layer goes only if nothing of it is to be kept.
     """
     start = tuple(map(tuple, np.asarray(voxels).tolist()))
     best, todo = {start: (0, 0)}, [start]
@@ -291,10 +292,12 @@ def contraction_outcomes(voxels, keep, layered):
             apart = np.abs(np.subtract(path[i], path[j]))
             flat = len({v[2] for v in path[i : j + 1]}) == 1
             n_kept = sum(bool(keep[v]) for v in path[i + 1 : j])
-            if j < i + 2 or apart.sum() != 1 or (layered and (apart[2] or (n_kept and not flat))):
+            if j < i + 2 or apart.sum() != 1:
+                continue
+            if piece and (piece[path[i]] != piece[path[j]] or (n_kept and not flat)):
                 continue
             lost, n_excursions = best[path]
-            cost = (lost + n_kept, n_excursions + (layered and not flat))
+            cost = (lost + n_kept, n_excursions + (piece is not None and not flat))
             after = path[: i + 1] + path[j:]
             if after not in best:
                 todo.append(after)
@@ -302,7 +305,7 @@ def contraction_outcomes(voxels, keep, layered):
     return best
 
 
-def least_losses(voxels, keep, layered):
+def least_losses(voxels, keep, piece=None):
     """{length: least (voxels to keep lost, voxels off the ends, excursions)}: all ways tried."""
     n, best = len(voxels), {}
     for a, b in itertools.product(range(0, n, 2), range(0, n, 2)):
@@ -310,7 +313,7 @@ def least_losses(voxels, keep, layered):
         if len(middle) < 2:
             continue
         off = int(keep[tuple(np.concatenate([voxels[:a], voxels[n - b :]]).T)].sum())
-        for path, (lost, n_excursions) in contraction_outcomes(middle, keep, layered).items():
+        for path, (lost, n_excursions) in contraction_outcomes(middle, keep, piece).items():
             cost = (off + lost, a + b, n_excursions)
             best[len(path)] = min(cost, best.get(len(path), cost))
     return best

@@ -1,5 +1,6 @@
 """Section 5: contraction pairs, and trimming of paths and foldings to one length."""
 
+import itertools
 import re
 
 import numpy as np
@@ -43,6 +44,20 @@ def kept(path, solid):
     return int(surface(solid.occupancy)[tuple(path.voxels.T)].sum())
 
 
+def pieces_by_return(voxels):
+    """Pieces of a path as a layered one: what comes back beside where it left a piece goes on."""
+    pieces, left = [0], []
+    for old, new in itertools.pairwise(np.asarray(voxels).tolist()):
+        if old[2] == new[2]:
+            pieces.append(pieces[-1])
+        elif left and np.abs(np.subtract(left[-1][0], new)).sum() == 1:
+            pieces.append(left.pop()[1])
+        else:
+            left.append((old, pieces[-1]))
+            pieces.append(max(pieces) + 1)
+    return np.array(pieces)
+
+
 @st.composite
 def walks(draw, layered, max_voxels=12):
     """An even path in a box of 3 x 3 x 3, with its solid and voxels to keep."""
@@ -58,8 +73,18 @@ def walks(draw, layered, max_voxels=12):
     occupancy[tuple(path.T)] = True
     assume(not voids(occupancy).any())
     keep = np.array(draw(st.lists(st.booleans(), min_size=27, max_size=27))).reshape(3, 3, 3)
-    visits = visits_of(path) if layered else np.empty((0, 4), np.int32)
-    return lu.VoxelPath(path, visits), lu.VoxelSolid(occupancy), keep
+    walk, solid = lu.VoxelPath(path), lu.VoxelSolid(occupancy)
+    if layered:
+        walk = lu.VoxelPath(path, visits_of(path, pieces_by_return(path)))
+        assume(lu.certify_path(walk, solid).ok)
+    return walk, solid, keep
+
+
+def piece_of(path):
+    """The piece of each voxel of a path, None if it is not layered."""
+    if not len(path.visits):
+        return None
+    return {tuple(v): n for a, b, n, _ in path.visits for v in path.voxels[a:b].tolist()}
 
 
 def told(item):
@@ -138,7 +163,7 @@ def test_a_folding_of_any_solid_is_trimmed_and_stays_certified(occupancy, data):
 @given(data=st.data())
 def test_no_voxel_to_keep_is_lost_that_some_way_of_trimming_keeps(layered, data):
     path, solid, keep = data.draw(walks(layered))
-    losses = least_losses(path.voxels, keep, layered)
+    losses = least_losses(path.voxels, keep, piece_of(path))
     for length in range(2, len(path), 2):
         trimmed = lu.trim([path], length, keep=[keep])[0]
         check_trimmed(trimmed, path, solid, length)
@@ -156,7 +181,7 @@ def test_no_voxel_to_keep_is_lost_that_some_way_of_trimming_keeps(layered, data)
 @given(walks(layered=True))
 def test_one_scan_reaches_all_that_contracting_again_and_again_does(case):
     path, _, keep = case
-    paths = contraction_outcomes(path.voxels, keep, layered=True)
+    paths = contraction_outcomes(path.voxels, keep, piece_of(path))
     reached = {len(p) for p, cost in paths.items() if cost == (0, 0)}
     sums = {sum(j - i - 1 for i, j in s) for s in disjoint_subsets(contraction_pairs(path, keep))}
     assert reached == {len(path) - n for n in sums}
@@ -187,7 +212,7 @@ ARCH = [(0, 0, 0), (1, 0, 0), (1, 0, 1), (2, 0, 1), (2, 0, 0), (3, 0, 0), (3, 1,
 def arch(end):
     """A layered path with one excursion of two voxels; it may end in a pair of index 2."""
     voxels = np.array(ARCH[:end], np.int32)
-    return lu.VoxelPath(voxels, visits_of(voxels))
+    return lu.VoxelPath(voxels, visits_of(voxels, pieces_by_return(voxels)))
 
 
 @pytest.mark.parametrize(
@@ -211,6 +236,23 @@ def test_each_fallback_in_its_order(end, kept_voxels, length, expected):
     occupancy = np.zeros((4, 2, 2), bool)
     occupancy[tuple(arch(end).voxels.T)] = True
     check_trimmed(trimmed, arch(end), lu.VoxelSolid(occupancy), length)
+
+
+def test_a_path_cut_so_that_its_msp_comes_to_a_node_twice_is_no_longer_layered():
+    climb = [*ARCH[:6], (3, 0, 1), (4, 0, 1)]
+    occupancy = np.zeros((5, 1, 2), bool)
+    occupancy[tuple(np.array(climb).T)] = True
+    path = lu.VoxelPath(
+        np.array(climb), visits_of(np.array(climb), np.array([0, 0, 1, 1, 0, 0, 2, 2]))
+    )
+    assert lu.certify_path(path, lu.VoxelSolid(occupancy)).ok
+    at_start, at_end = np.zeros((2, 5, 1, 2), bool)
+    at_start[tuple(path.voxels[:6].T)] = at_end[tuple(path.voxels[2:].T)] = True
+    for keep, n_visits in ((at_start, 3), (at_end, 0)):
+        trimmed = lu.trim([path], 6, keep=[keep])[0]
+        check_trimmed(trimmed, path, lu.VoxelSolid(occupancy), 6)
+        assert told(trimmed) == (0, 0, 2, 0)
+        assert len(trimmed.visits) == n_visits
 
 
 @pytest.mark.parametrize("at_start", [False, True])
@@ -271,6 +313,16 @@ def test_a_path_too_long_for_one_table_is_shortened_in_instalments(monkeypatch):
     parts = lu.trim([path], 60)[0]
     check_trimmed(parts, path, CUBE, 60)
     assert told(parts)[3] >= told(whole)[3]
+
+
+def test_a_layered_folding_stays_layered():
+    folding = lu.fold(CUBE, method="layered")
+    assert len(folding.path.visits)
+    assert folding.motion.straight
+    trimmed = lu.trim([folding], len(folding.path) - 20)[0]
+    check_trimmed(trimmed, folding.path, CUBE, len(folding.path) - 20)
+    assert len(trimmed.path.visits)
+    assert lu.certify(trimmed.motion).ok
 
 
 def test_an_accordion_is_unfolded_anew():

@@ -159,25 +159,35 @@ def _adjacent(grid: Grid, cell: int, other: int) -> bool:
 
 
 @kernel
-def contract_all(grid: Grid, fold: Fold, keep: BoolArray, length: int, longest: int) -> None:
+def contract_all(
+    grid: Grid, fold: Fold, keep: BoolArray, length: int, longest: int, in_layer: bool
+) -> None:
     """Contract pairs of index up to `longest` down to `length`, none with a voxel to `keep`.
 
-    The joints between i and j may go where i and j are adjacent and a plan remains.
+    The joints between i and j may go where i and j are adjacent and a plan remains, and if asked
+    for, where i to j lie in one layer.
     """
     changed = True
     while changed and fold.size[0] > length:
         changed = False
         i = 0
         while i + 3 < fold.size[0] and fold.size[0] > length:
-            changed |= _contract_from(grid, fold, keep, i, min(longest, fold.size[0] - length))
+            index = min(longest, fold.size[0] - length)
+            changed |= _contract_from(grid, fold, keep, i, index, in_layer)
             i += 1
 
 
 @kernel
-def _contract_from(grid: Grid, fold: Fold, keep: BoolArray, i: int, longest: int) -> bool:
+def _contract_from(
+    grid: Grid, fold: Fold, keep: BoolArray, i: int, longest: int, in_layer: bool
+) -> bool:
     """Contract the pair of least index that begins at joint i, if there is one."""
+    z = grid.xyz[fold.path[i], 2]
     for j in range(i + 3, min(i + 2 + longest, fold.size[0]), 2):
-        if keep[fold.path[j - 2]] or keep[fold.path[j - 1]]:
+        for cell in fold.path[j - 2 : j]:
+            if keep[cell] or (in_layer and grid.xyz[cell, 2] != z):
+                return False
+        if in_layer and grid.xyz[fold.path[j], 2] != z:
             return False
         adjacent = _adjacent(grid, fold.path[i], fold.path[j])
         if adjacent and replace(grid, fold, i, j, np.empty(0, np.int32)):
