@@ -80,7 +80,7 @@ def _leaves_layer(voxels: IntArray, pairs: IntArray) -> BoolArray:
 def shortened_path(path: VoxelPath, length: int, keep: BoolArray) -> VoxelPath:
     """`path` with `length` voxels, an even number fewer, at the least loss of voxels to keep.
 
-    Contraction pairs, excursions with nothing to keep and blocks at both ends may go. As few
+    Contraction pairs, whole excursions with nothing to keep and blocks at both ends may go. As few
     voxels to keep as possible are lost, then as few blocks off the ends as possible, then as few
     excursions. A path that is not layered has pairs in all directions and no excursions; a
     layered one stays layered unless a cut leads its MSP to one node twice.
@@ -115,21 +115,15 @@ def _least_loss(voxels: IntArray, pieces: IntArray | None, kept: BoolArray, exce
     Nothing is gained by contracting again and again: a pair that shows only after a contraction
     is a pair of higher index before it.
     """
-    if pieces is None:
-        pairs = _adjacent_steps(voxels, grid.DIRECTIONS)
-        leaves = np.zeros(len(pairs), bool)
-    else:
-        pairs = _adjacent_steps(voxels, grid.DIRECTIONS[[0, 1, 3, 4]])
-        pairs = pairs[pieces[pairs[:, 0]] == pieces[pairs[:, 1]]]
-        leaves = _leaves_layer(voxels, pairs)
+    pairs, leaves = _pairs_and_excursions(voxels, pieces, kept)
     n_kept = _n_between(kept, pairs)
     fate = np.zeros(len(voxels), np.int8)
     simple = of_index_2(pairs[~leaves & (n_kept == 0)], excess // 2)
     if 2 * len(simple) == excess:
         fate[_between(simple)] = PAIR
         return fate
-    usable = (pairs[:, 1] - pairs[:, 0] - 1 <= excess) & (~leaves | (n_kept == 0))
-    pairs, leaves, n_kept = pairs[usable], leaves[usable], n_kept[usable]
+    short = pairs[:, 1] - pairs[:, 0] - 1 <= excess
+    pairs, leaves, n_kept = pairs[short], leaves[short], n_kept[short]
     cost = _cost(n_kept, 0, leaves)
     steps = np.arange(len(voxels))
     head = _cost(np.concatenate([[0], kept.cumsum()[:-1]]), steps, 0)
@@ -145,6 +139,23 @@ def _least_loss(voxels: IntArray, pieces: IntArray | None, kept: BoolArray, exce
     fate[_between(pairs[taken & ~leaves])] = PAIR
     fate[_between(pairs[taken & leaves])] = EXCURSION
     return fate
+
+
+def _pairs_and_excursions(
+    voxels: IntArray, pieces: IntArray | None, kept: BoolArray
+) -> tuple[IntArray, BoolArray]:
+    """Pairs of adjacent steps, by the second, and whether the path leaves its piece between."""
+    if pieces is None:
+        pairs = _adjacent_steps(voxels, grid.DIRECTIONS)
+        return pairs, np.zeros(len(pairs), bool)
+    pairs = _adjacent_steps(voxels, grid.DIRECTIONS[[0, 1, 3, 4]])
+    pairs = pairs[pieces[pairs[:, 0]] == pieces[pairs[:, 1]]]
+    order = np.argsort(pieces, kind="stable")
+    n_before = np.empty(len(voxels), np.int64)  # steps to keep before each in its own piece
+    n_before[order] = kept[order].cumsum() - kept[order]
+    i, j = pairs.T
+    whole = _n_between(kept, pairs) == n_before[j] - n_before[i] - kept[i]
+    return pairs[whole], _leaves_layer(voxels, pairs[whole])
 
 
 def _cost(n_kept: NDArray[np.int64], n_ends: object, n_excursions: object) -> Costs:

@@ -84,9 +84,9 @@ def trim(
     Notes
     -----
     ``"exact"``: the voxels between contraction pairs go first. Where they are too few, these
-    follow, each only where those before it do not do: excursions (the path leaves the layer
-    between two adjacent voxels, and nothing on the way is to be kept), blocks off either end,
-    and last voxels to keep, between pairs or off the ends, as few as possible.
+    follow, each only where those before it do not do: whole excursions (between two adjacent
+    voxels the path leaves its piece, and there is nothing to keep where it goes), blocks off
+    either end, and last voxels to keep, between pairs or off the ends, as few as possible.
 
     A folding of peels and swings keeps a valid plan through every contraction, so fewer are
     open to it: any pair with nothing to keep between, then blocks without voxels to keep off

@@ -280,8 +280,8 @@ def contraction_outcomes(voxels, keep, piece=None):
     """Every path that sequences of contractions lead to: {path: (voxels to keep lost, excursions)}.
 
     One contraction at a time, each found anew on the path as it is then. `piece` names the planar
-    piece of each voxel of a layered path: a contraction begins and ends in one piece, and what
-    leaves its layer goes only if nothing of it is to be kept.
+    piece of each voxel of a layered path: a contraction begins and ends in one piece, and an
+    excursion from it goes only if nothing of it was to be kept.
     """
     start = tuple(map(tuple, np.asarray(voxels).tolist()))
     best, todo = {start: (0, 0)}, [start]
@@ -294,8 +294,11 @@ def contraction_outcomes(voxels, keep, piece=None):
             n_kept = sum(bool(keep[v]) for v in path[i + 1 : j])
             if j < i + 2 or apart.sum() != 1:
                 continue
-            if piece and (piece[path[i]] != piece[path[j]] or (n_kept and not flat)):
-                continue
+            if piece:
+                whole = start[start.index(path[i]) : start.index(path[j]) + 1]
+                away = [v for v in whole if piece[v] != piece[path[i]]]
+                if piece[path[i]] != piece[path[j]] or any(keep[v] for v in away):
+                    continue
             lost, n_excursions = best[path]
             cost = (lost + n_kept, n_excursions + (piece is not None and not flat))
             after = path[: i + 1] + path[j:]

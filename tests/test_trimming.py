@@ -15,7 +15,7 @@ from lineup import contraction
 from lineup.contraction import contraction_pairs
 from lineup.folding.shorten import _without_ends
 from lineup.grid import surface, voids
-from lineup.motion.plan import motion_of, states_of
+from lineup.motion.plan import has_peel_plan, motion_of, states_of
 from lineup.visits import visits_of
 
 CUBE = lu.VoxelSolid(np.ones((6, 6, 6), bool))
@@ -238,6 +238,26 @@ def test_each_fallback_in_its_order(end, kept_voxels, length, expected):
     check_trimmed(trimmed, arch(end), lu.VoxelSolid(occupancy), length)
 
 
+def test_a_pair_of_high_index_goes_before_an_excursion():
+    steps = [*ARCH[:6], (3, 1, 0), (3, 2, 0), (4, 2, 0), (4, 1, 0), (4, 0, 0), (5, 0, 0)]
+    voxels = np.array(steps, np.int32)
+    path = lu.VoxelPath(voxels, visits_of(voxels, pieces_by_return(voxels)))
+    assert told(lu.trim([path], 8, keep="none")[0]) == (4, 0, 0, 0)
+
+
+def test_two_pieces_of_one_node_are_not_joined():
+    """Two excursions down from one piece, side by side; only what is between them may go."""
+    steps = [(0, 1), (0, 0), (1, 0), (1, 1), (2, 1), (2, 0), (3, 0), (3, 1)]
+    voxels = np.array([(x, 0, z) for x, z in steps], np.int32)
+    path = lu.VoxelPath(voxels, visits_of(voxels, pieces_by_return(voxels)))
+    assert path.visits[:, 2].tolist() == [0, 1, 0, 2, 0]
+    keep = np.ones((4, 1, 2), bool)
+    keep[1:3, 0, 1] = False
+    trimmed = lu.trim([path], 6, keep=[keep])[0]
+    check_trimmed(trimmed, path, lu.VoxelSolid(np.ones((4, 1, 2), bool)), 6)
+    assert told(trimmed) == (0, 0, 2, 2)
+
+
 def test_a_path_cut_so_that_its_msp_comes_to_a_node_twice_is_no_longer_layered():
     climb = [*ARCH[:6], (3, 0, 1), (4, 0, 1)]
     occupancy = np.zeros((5, 1, 2), bool)
@@ -315,14 +335,28 @@ def test_a_path_too_long_for_one_table_is_shortened_in_instalments(monkeypatch):
     assert told(parts)[3] >= told(whole)[3]
 
 
+def test_a_folding_has_pairs_of_high_index():
+    ring = [(1, 0), (2, 0), (2, 1), (2, 2), (1, 2), (0, 2), (0, 1), (0, 0)]
+    path = flat_path([(x + 2, y) for x, y in [*ring, (-1, 0), (-2, 0)]])
+    folding = lu.Folding(path, lu.unfold(path))
+    assert has_peel_plan(folding.motion)
+    keep = np.zeros((5, 3, 1), bool)
+    keep[:4, 0] = True
+    trimmed = lu.trim([folding], 4, keep=[keep])[0]
+    assert trimmed.path.voxels[:, 0].tolist() == [3, 2, 1, 0]
+    assert told(trimmed) == (6, 0, 0, 0)
+    assert lu.certify(trimmed.motion).ok
+
+
 def test_a_layered_folding_stays_layered():
     folding = lu.fold(CUBE, method="layered")
     assert len(folding.path.visits)
-    assert folding.motion.straight
-    trimmed = lu.trim([folding], len(folding.path) - 20)[0]
-    check_trimmed(trimmed, folding.path, CUBE, len(folding.path) - 20)
-    assert len(trimmed.path.visits)
-    assert lu.certify(trimmed.motion).ok
+    assert has_peel_plan(folding.motion)
+    for length in (180, 120, 60):
+        trimmed = lu.trim([folding], length)[0]
+        check_trimmed(trimmed, folding.path, CUBE, length)
+        assert len(trimmed.path.visits)
+        assert lu.certify(trimmed.motion).ok
 
 
 def test_an_accordion_is_unfolded_anew():
