@@ -34,9 +34,11 @@ _HOME = {
     "fold": "folding",
     "FOLD_METHODS": "folding",
     "trim": "trimming",
+    "TRIM_METHODS": "trimming",
     "save": "storage",
     "load": "storage",
     "lineup": "pipeline",
+    "add": "pipeline",
 }
 
 __all__ = sorted(_HOME)

@@ -91,27 +91,93 @@ def lineup(
             listed = ", ".join(sorted(names))
             raise ValueError(f"two models would be stored under one name: {listed}")
         Path(folder).mkdir(parents=True, exist_ok=True)
+    attempts = [
+        _attempt(name, source, blocks, seed, folder, progress)
+        for name, source in zip(names, models, strict=True)
+    ]
+    return _extended(Design((), (), (), pd.DataFrame()), attempts)
+
+
+def add(
+    design: Design,
+    model: Source,
+    seed: int = 0,
+    *,
+    progress: Callable[[str, str], None] | None = None,
+) -> Design:
+    """`design` with one model more for the same chain (incremental design, Section 8, Figure 15).
+
+    The model is voxelized so that its path reaches the length of the chain, trimmed to exactly
+    that, and unfolded into the same line.
+
+    Parameters
+    ----------
+    model : str, path, mesh or VoxelSolid
+        As in `lineup`. Unlike there, a name the design has already may come again.
+    progress : function, optional
+        As in `lineup`.
+
+    Returns
+    -------
+    Design
+        Its earlier models, foldings and certificates are those of `design`, untouched; so is
+        `design`. A model that fails is a row of the table with its reason, and no more.
+
+    Raises
+    ------
+    ValueError
+        If the design has no folding, foldings of several lengths, or the seed is negative.
+
+    Examples
+    --------
+    >>> import lineup as lu
+    >>> design = lu.add(lu.lineup(["duck"], blocks=40), "mug")
+    >>> design.table["model"].tolist(), [len(folding.path) for folding in design.foldings]
+    (['duck', 'mug'], [80, 80])
+    """
+    lengths = sorted({len(folding.path) for folding in design.foldings})
+    if len(lengths) != 1 or lengths[0] % 2:
+        got = f"foldings of {', '.join(map(str, lengths))} voxels" if lengths else "no folding"
+        raise ValueError(
+            f"a model is added to a chain of one even length, and the design has {got}"
+        )
+    blocks = lengths[0] // 2
+    _check_settings(blocks, seed)
+    (name,) = _names([model], first=len(design.table) + 1)
+    return _extended(design, [_attempt(name, model, blocks, seed, None, progress)])
+
+
+def _attempt(
+    name: str,
+    source: Source,
+    blocks: int,
+    seed: int,
+    folder: str | os.PathLike[str] | None,
+    progress: Callable[[str, str], None] | None,
+) -> tuple[_Result | None, dict[str, Any]]:
+    """What became of one model, None if it failed, and its row; stored if there is a folder."""
     tell = progress or (lambda name, stage: None)
-    results, rows = [], []
-    for name, source in zip(names, models, strict=True):
-        try:
-            result = _line_up(source, blocks, seed, partial(tell, name))
-        except Exception as error:  # whatever is wrong with one model, the others go on
-            expected = isinstance(error, ValueError | OSError)
-            reason = str(error) if expected else f"{type(error).__name__}: {error}"
-            rows.append({"model": name, "blocks": blocks, "failure": reason})
-            tell(name, f"failed: {reason}")
-            continue
-        if folder is not None:
-            _store(result, name, Path(folder))
-        results.append(result)
-        rows.append({"model": name, "blocks": blocks, **result.row, "failure": ""})
-        tell(name, "done")
+    try:
+        result = _line_up(source, blocks, seed, partial(tell, name))
+    except Exception as error:  # whatever is wrong with one model, the others go on
+        expected = isinstance(error, ValueError | OSError)
+        reason = str(error) if expected else f"{type(error).__name__}: {error}"
+        tell(name, f"failed: {reason}")
+        return None, {"model": name, "blocks": blocks, "failure": reason}
+    if folder is not None:
+        _store(result, name, Path(folder))
+    tell(name, "done")
+    return result, {"model": name, "blocks": blocks, **result.row, "failure": ""}
+
+
+def _extended(design: Design, attempts: Sequence[tuple[_Result | None, dict[str, Any]]]) -> Design:
+    """A design with more rows, and what those attempts that went well made."""
+    results = [result for result, _ in attempts if result is not None]
     return Design(
-        tuple(result.solid for result in results),
-        tuple(result.folding for result in results),
-        tuple(result.certificate for result in results),
-        pd.DataFrame(rows),
+        (*design.models, *(result.solid for result in results)),
+        (*design.foldings, *(result.folding for result in results)),
+        (*design.certificates, *(result.certificate for result in results)),
+        pd.DataFrame([*design.table.to_dict("records"), *(row for _, row in attempts)]),
     )
 
 
@@ -130,8 +196,8 @@ def _store(result: _Result, name: str, folder: Path) -> None:
     save(result.folding, folder / f"{name}.folding.json")
 
 
-def _names(models: Sequence[Source]) -> list[str]:
-    """What each source is called in tables and file names."""
+def _names(models: Sequence[Source], first: int = 1) -> list[str]:
+    """What each source is called in tables and file names, a nameless one by its number."""
     if isinstance(models, str | os.PathLike):
         raise ValueError(f"models must be a list, got {models!r} alone; put it in brackets")
     if len(models) == 0:
@@ -140,7 +206,7 @@ def _names(models: Sequence[Source]) -> list[str]:
         Path(source).stem
         if isinstance(source, str | os.PathLike)
         else str(getattr(source, "name", "")) or f"model{number}"
-        for number, source in enumerate(models, start=1)
+        for number, source in enumerate(models, start=first)
     ]
 
 

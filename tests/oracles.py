@@ -326,3 +326,57 @@ def edges_on_squares(edges):
                 square = corner, 3 - along - other
                 count[square] = count.get(square, 0) + 1
     return count
+
+
+def disjoint_subsets(pairs):
+    """All sets of pairs (i, j) of which each begins where the one before it ends, or later."""
+    subsets = [()]
+    for pair in sorted(map(tuple, pairs), key=lambda p: p[1]):
+        subsets += [(*s, pair) for s in subsets if not s or s[-1][1] <= pair[0]]
+    return subsets
+
+
+def contraction_outcomes(voxels, keep, piece=None):
+    """Every path that sequences of contractions lead to: {path: (voxels to keep lost, excursions)}.
+
+    One contraction at a time, each found anew on the path as it is then. `piece` names the planar
+    piece of each voxel of a layered path: a contraction begins and ends in one piece, and an
+    excursion from it goes only if nothing of it was to be kept.
+    """
+    start = tuple(map(tuple, np.asarray(voxels).tolist()))
+    best, todo = {start: (0, 0)}, [start]
+    while todo:
+        path = max(todo, key=len)
+        todo.remove(path)
+        for i, j in itertools.combinations(range(len(path)), 2):
+            apart = np.abs(np.subtract(path[i], path[j]))
+            flat = len({v[2] for v in path[i : j + 1]}) == 1
+            n_kept = sum(bool(keep[v]) for v in path[i + 1 : j])
+            if j < i + 2 or apart.sum() != 1:
+                continue
+            if piece:
+                whole = start[start.index(path[i]) : start.index(path[j]) + 1]
+                away = [v for v in whole if piece[v] != piece[path[i]]]
+                if piece[path[i]] != piece[path[j]] or any(keep[v] for v in away):
+                    continue
+            lost, n_excursions = best[path]
+            cost = (lost + n_kept, n_excursions + (piece is not None and not flat))
+            after = path[: i + 1] + path[j:]
+            if after not in best:
+                todo.append(after)
+            best[after] = min(cost, best.get(after, cost))
+    return best
+
+
+def least_losses(voxels, keep, piece=None):
+    """{length: least (voxels to keep lost, voxels off the ends, excursions)}: all ways tried."""
+    n, best = len(voxels), {}
+    for a, b in itertools.product(range(0, n, 2), range(0, n, 2)):
+        middle = voxels[a : n - b]
+        if len(middle) < 2:
+            continue
+        off = int(keep[tuple(np.concatenate([voxels[:a], voxels[n - b :]]).T)].sum())
+        for path, (lost, n_excursions) in contraction_outcomes(middle, keep, piece).items():
+            cost = (off + lost, a + b, n_excursions)
+            best[len(path)] = min(cost, best.get(len(path), cost))
+    return best

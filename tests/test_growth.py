@@ -56,7 +56,8 @@ class Grown:
             _moves.anneal(self.grid, self.body, fold, 10, 3.0, 0.1, _fold.NEVER, rng)
         else:
             length = int(rng.integers(2, fold.size[0] + 1))
-            _moves.contract_all(self.grid, fold, rng.random(len(self.body.solid)) < 0.3, length)
+            keep, longest = rng.random(len(self.body.solid)) < 0.3, 2 * int(rng.integers(1, 6))
+            _moves.contract_all(self.grid, fold, keep, length, longest, False)
 
     def snapshot(self):
         fold = self.fold
@@ -128,7 +129,12 @@ def test_rods_of_two_busy_ends_keep_clear_of_each_other(seed):
             _fold.load(grown.fold, path, states)
         length = int(grown.rng.integers(6, len(path) + 1))
         _moves.contract_all(
-            grown.grid, grown.fold, grown.rng.random(len(grown.body.solid)) < 0.3, length
+            grown.grid,
+            grown.fold,
+            grown.rng.random(len(grown.body.solid)) < 0.3,
+            length,
+            2,
+            False,
         )
         _moves.anneal(grown.grid, grown.body, grown.fold, 4, 9.0, 9.0, _fold.NEVER, grown.rng)
         assert rod_fault(grown.voxels, grown.states) == ""
@@ -204,7 +210,7 @@ def test_swept_cells_are_those_of_the_point_sets(occupancy, seed):
     solid = lu.VoxelSolid(occupancy)
     grown = Grown(solid, layered_paths(solid, 0, starts=1)[0].voxels, seed)
     grown.change()
-    _moves.contract_all(grown.grid, grown.fold, np.zeros(len(grown.body.solid), bool), 6)
+    _moves.contract_all(grown.grid, grown.fold, np.zeros(len(grown.body.solid), bool), 6, 2, False)
     off_path = np.flatnonzero(grown.body.solid & (grown.fold.joint < 0))
     reach = max(occupancy.shape)
     for k in range(0, len(grown.states), max(1, len(grown.states) // 5)):
@@ -220,11 +226,11 @@ def test_contraction_keeps_what_it_must_and_stops_at_the_length():
     keep = np.pad(grid.surface(solid.occupancy), 1).ravel()
     kept = keep & (grown.fold.joint >= 0)
     n = len(grown.voxels)
-    _moves.contract_all(grown.grid, grown.fold, keep, n - 4)
+    _moves.contract_all(grown.grid, grown.fold, keep, n - 4, 2, False)
     grown.check(solid)
     assert n - 4 <= len(grown.voxels) < n
     assert (grown.fold.joint[kept] >= 0).all()
-    _moves.contract_all(grown.grid, grown.fold, np.zeros_like(keep), 2)
+    _moves.contract_all(grown.grid, grown.fold, np.zeros_like(keep), 2, 2, False)
     grown.check(solid)
     assert len(grown.voxels) < n // 2
 

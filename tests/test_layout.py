@@ -30,7 +30,7 @@ ORDER = [
     ),
     *("meshes", "implicit", "shapes", "sampling", "voxelization", "catalog"),
     *("visits", "reeb", "planar", "linking", "spatial", "refinement", "layered"),
-    *("bounds", "contraction"),
+    *("bounds", "subset_sums", "contraction"),
     *("motion", "folding", "trimming"),
     *("storage", "verification", "pipeline", "_sources", "engines", "sweep", "tables", "draw"),
     *("_progress", "cli"),

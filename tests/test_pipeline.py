@@ -1,11 +1,14 @@
 """Algorithm 1 from end to end."""
 
 import numpy as np
+import pandas as pd
 import pytest
 import trimesh
 
 import lineup as lu
 from lineup.pipeline import table2_task
+
+KINDS = ("models", "foldings", "certificates")
 
 
 def check_design(design, blocks):
@@ -97,3 +100,74 @@ def test_a_design_with_a_failed_model_is_stored_and_loads(tmp_path):
     assert [solid.name for solid in stored.models] == ["mug"]
     assert stored.table["model"].tolist() == ["mug", "dice"]
     assert stored.table["failure"][1] == design.table["failure"][1]
+
+
+@pytest.fixture(scope="module")
+def two_poses():
+    dice = lu.VoxelSolid(np.ones((2, 2, 2), bool), name="dice")
+    return lu.lineup(
+        ["mug", dice, lu.VoxelSolid(np.ones((5, 5, 2), bool), name="plate")], blocks=20
+    )
+
+
+def check_added(after, before):
+    """Whatever was in a design is in it still, the very same."""
+    n = len(before.models)
+    for kind in KINDS:
+        earlier = getattr(before, kind)
+        assert all(a is b for a, b in zip(getattr(after, kind)[:n], earlier, strict=True))
+    earlier = after.table.iloc[: len(before.table)][before.table.columns]
+    pd.testing.assert_frame_equal(earlier, before.table, check_dtype=False)
+    assert len(after.table) == len(before.table) + 1
+
+
+@pytest.mark.parametrize("source", ["duck", "mesh", "solid", "mug"])
+def test_a_model_is_added_to_a_chain_and_no_other_changes(source, two_poses):
+    made = {
+        "mesh": trimesh.creation.icosphere(),
+        "solid": lu.VoxelSolid(np.ones((4, 4, 4), bool), name="cube"),
+    }
+    design = lu.add(two_poses, made.get(source, source))
+    check_added(design, two_poses)
+    check_design(design, 20)
+    assert len(design.models) == len(two_poses.models) + 1
+    assert design.table["model"].tolist() == [
+        *["mug", "dice", "plate"],
+        {"mesh": "model4", "solid": "cube"}.get(source, source),
+    ]
+    assert design.table["certified"].tolist()[-1] is True
+    assert design.table["failure"].tolist()[-1] == ""
+
+
+def test_what_is_added_is_what_lineup_makes(two_poses):
+    added = lu.add(two_poses, "duck", seed=3).foldings[-1]
+    (alone,) = lu.lineup(["duck"], blocks=20, seed=3).foldings
+    assert np.array_equal(added.path.voxels, alone.path.voxels)
+    assert np.array_equal(added.motion.moves, alone.motion.moves)
+
+
+def test_a_model_that_cannot_be_added_is_a_row_with_its_reason(two_poses, tmp_path):
+    told = []
+    small = lu.VoxelSolid(np.ones((3, 3, 3), bool))
+    design = lu.add(two_poses, small, progress=lambda *said: told.append(said))
+    check_added(design, two_poses)
+    assert len(design.models) == len(two_poses.models)
+    reason = design.table["failure"].tolist()[-1]
+    assert reason.startswith("the longest path found has 26 of the 40 voxels")
+    assert told[-1] == ("model4", f"failed: {reason}")
+    stored = lu.load(lu.save(design, tmp_path))
+    check_added(lu.add(stored, "duck"), stored)
+
+
+def test_a_chain_without_one_length_takes_no_model(two_poses):
+    none = lu.lineup(["dukc"], blocks=20)
+    with pytest.raises(ValueError, match="of one even length, and the design has no folding"):
+        lu.add(none, "mug")
+    other = lu.lineup(["mug"], blocks=30)
+    mixed = lu.Design(
+        *(getattr(two_poses, kind) + getattr(other, kind) for kind in KINDS), two_poses.table
+    )
+    with pytest.raises(ValueError, match="and the design has foldings of 40, 60 voxels"):
+        lu.add(mixed, "mug")
+    with pytest.raises(ValueError, match="seed must be an integer of at least 0"):
+        lu.add(two_poses, "mug", seed=-1)

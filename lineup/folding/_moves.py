@@ -159,21 +159,40 @@ def _adjacent(grid: Grid, cell: int, other: int) -> bool:
 
 
 @kernel
-def contract_all(grid: Grid, fold: Fold, keep: BoolArray, length: int) -> None:
-    """Contract pairs of index 2 down to `length`, none with a voxel to `keep`.
+def contract_all(
+    grid: Grid, fold: Fold, keep: BoolArray, length: int, longest: int, in_layer: bool
+) -> None:
+    """Contract pairs of index up to `longest` down to `length`, none with a voxel to `keep`.
 
-    Joints i + 1 and i + 2 may go where i and i + 3 are adjacent and a plan remains.
+    The joints between i and j may go where i and j are adjacent and a plan remains, and if asked
+    for, where i to j lie in one layer.
     """
-    nothing = np.empty(0, np.int32)
     changed = True
     while changed and fold.size[0] > length:
         changed = False
         i = 0
         while i + 3 < fold.size[0] and fold.size[0] > length:
-            kept = keep[fold.path[i + 1]] or keep[fold.path[i + 2]]
-            if not kept and _adjacent(grid, fold.path[i], fold.path[i + 3]):
-                changed |= replace(grid, fold, i, i + 3, nothing)
+            index = min(longest, fold.size[0] - length)
+            changed |= _contract_from(grid, fold, keep, i, index, in_layer)
             i += 1
+
+
+@kernel
+def _contract_from(
+    grid: Grid, fold: Fold, keep: BoolArray, i: int, longest: int, in_layer: bool
+) -> bool:
+    """Contract the pair of least index that begins at joint i, if there is one."""
+    z = grid.xyz[fold.path[i], 2]
+    for j in range(i + 3, min(i + 2 + longest, fold.size[0]), 2):
+        for cell in fold.path[j - 2 : j]:
+            if keep[cell] or (in_layer and grid.xyz[cell, 2] != z):
+                return False
+        if in_layer and grid.xyz[fold.path[j], 2] != z:
+            return False
+        adjacent = _adjacent(grid, fold.path[i], fold.path[j])
+        if adjacent and replace(grid, fold, i, j, np.empty(0, np.int32)):
+            return True
+    return False
 
 
 @kernel

@@ -2,38 +2,68 @@
 
 import numpy as np
 
-from ..contraction import cut_down, occupancy_of, shortened_path
-from ..grid import IntArray, surface
+from ..contraction import END, PAIR, occupancy_of, shortened_path, without
+from ..grid import BoolArray, IntArray, surface
 from ..motion import unfold
 from ..motion._chain import box_grid, cells_of
 from ..motion.plan import has_peel_plan, motion_of, states_of
-from ..solid import Folding
-from ._fold import new_fold
+from ..solid import Folding, VoxelPath
+from ._fold import Fold, load, new_fold
 from ._moves import contract_all
 
 
-def shortened_folding(folding: Folding, length: int) -> Folding:
-    """A folding cut down to `length` voxels; surface voxels go only if they must.
+def shortened_folding(folding: Folding, length: int, keep: BoolArray | None = None) -> Folding:
+    """A folding cut down to `length` voxels; those to keep, or the surface, go if they must.
 
-    A motion of peels and swings keeps a valid plan; any other path is unfolded anew.
+    A motion of peels and swings keeps a valid plan; any other path is unfolded anew. The order in
+    which voxels go is that of `trimming.trim`.
     """
-    if not has_peel_plan(folding.motion):
-        path = shortened_path(folding.path, length)
-        return Folding(path, unfold(path))
     occupancy = occupancy_of(folding.path)
+    keep = surface(occupancy) if keep is None else keep
+    if not has_peel_plan(folding.motion):
+        path = shortened_path(folding.path, length, keep)
+        return Folding(path, unfold(path))
     grid, cells = box_grid(occupancy.shape), cells_of(folding.path.voxels, occupancy.shape)
     fold = new_fold(len(grid.outside), cells, states_of(folding.motion), len(cells))
-    contract_all(grid, fold, np.pad(surface(occupancy), 1).ravel(), length)
-    contract_all(grid, fold, np.zeros(len(grid.outside), bool), length)
-    path = cut_down(folding.path, grid.xyz[fold.path[: fold.size[0]]], length)
-    plan = _without_end(fold.states[: fold.size[1]], length)
-    return Folding(path, motion_of(path.voxels, plan))
+    kept = np.pad(keep, 1).ravel()
+    nothing = np.zeros_like(kept)
+    in_layer = len(folding.path.visits) > 0
+    contract_all(grid, fold, kept, length, 2, in_layer)
+    contract_all(grid, fold, kept, length, len(cells), in_layer)
+    _cut_ends(fold, kept, length, free=True)
+    contract_all(grid, fold, nothing, length, 2, in_layer)
+    _cut_ends(fold, kept, length, free=False)
+    path = _told(folding.path, np.isin(cells, fold.path[:length]), keep)
+    return Folding(path, motion_of(path.voxels, fold.states[: fold.size[1]]))
 
 
-def _without_end(states: IntArray, length: int) -> IntArray:
-    """The plan of a chain cut to its first `length` joints."""
+def _cut_ends(fold: Fold, kept: BoolArray, length: int, *, free: bool) -> None:
+    """Cut blocks off both ends where the fewest voxels to keep go; none of them if `free`."""
+    path, states = fold.path[: fold.size[0]].copy(), fold.states[: fold.size[1]].copy()
+    n_before = np.concatenate([[0], kept[path].cumsum()])
+    for excess in range(len(path) - length, 0, -2):
+        first = np.arange(0, excess + 1, 2)
+        cost = n_before[first] + n_before[-1] - n_before[len(path) - excess + first]
+        a = int(first[cost.argmin()])
+        if not free or cost.min() == 0:
+            b = a + len(path) - excess
+            load(fold, path[a:b], _without_ends(states, a, b))
+            return
+
+
+def _without_ends(states: IntArray, first: int, stop: int) -> IntArray:
+    """The plan of a chain cut to its joints from `first` to `stop` - 1."""
     cut = states.copy()
-    cut[:, 1] = np.minimum(cut[:, 1], length - 1)
+    cut[:, 0] = np.maximum(cut[:, 0], first) - first
+    cut[:, 1] = np.minimum(cut[:, 1], stop - 1) - first
     done = int(np.argmax(cut[:, 1] - cut[:, 0] <= 1))
     plan: IntArray = cut[: done + 1]
     return plan
+
+
+def _told(path: VoxelPath, stays: BoolArray, keep: BoolArray) -> VoxelPath:
+    """The steps of `path` that stay."""
+    fate = np.where(stays, 0, PAIR).astype(np.int8)
+    first, last = np.flatnonzero(stays)[[0, -1]]
+    fate[:first] = fate[last + 1 :] = END
+    return without(path, fate, keep[tuple(path.voxels.T)])
