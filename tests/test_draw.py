@@ -11,15 +11,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 from PIL import Image
 from polycubes import polycubes
 
 import lineup as lu
 from lineup import draw
+from lineup.contraction import contraction_pairs
 from lineup.draw import moments, plans, render
 from lineup.draw.bodies import chain_body, left_out_body, solid_body
 from lineup.draw.page import DPI
 from lineup.draw.view import Capsules, Cubes, colours, view_of
+from lineup.planar import paper_path
 
 RED, BLUE = (220, 30, 30), (30, 30, 220)
 
@@ -340,3 +343,62 @@ def test_one_warning_where_vtk_cannot_draw(monkeypatch):
         assert len(caught) == 1
     finally:
         render.renderer.cache_clear()
+
+
+SLAB = np.ones((8, 9), bool)
+STEPS = paper_path(SLAB, (2, 2), (5, 3))
+
+
+def lines_of(axes):
+    """Cells along each line of some axes."""
+    return [np.stack(line.get_data(), axis=1).astype(int).tolist() for line in axes.lines]
+
+
+def test_planar_steps_show_what_algorithm_2_did():
+    _, cycle, interior, merged = draw.planar_steps(SLAB, STEPS).axes
+    assert lines_of(cycle)[0] == [*STEPS.boundary.tolist(), STEPS.boundary[0].tolist()]
+    assert STEPS.interior.tolist() in lines_of(interior)
+    assert STEPS.cells.tolist() in lines_of(merged)
+
+
+def test_planar_steps_tell_why_there_is_none():
+    cross = np.zeros((5, 5), bool)
+    cross[2] = cross[:, 2] = True
+    figure = draw.planar_steps(cross, paper_path(cross, (2, 0), (0, 2)))
+    assert "dangling" in figure.axes[3].texts[0].get_text()
+    with pytest.raises(ValueError, match="nothing merged"):
+        draw.merge(paper_path(cross, (2, 0), (0, 2)))
+
+
+def test_the_merge_square_holds_the_links_that_differ():
+    """Two links of cycle and interior path are not in the merged path: sides of one square."""
+    before, _ = draw.merge(STEPS).axes
+    (frame,) = (patch for patch in before.patches if isinstance(patch, Rectangle))
+    x, y = np.rint(np.array(frame.get_xy()) + 0.5).astype(int)
+    square = {(x + a, y + b) for a in (0, 1) for b in (0, 1)}
+    merged = {frozenset(map(tuple, link)) for link in pairwise(STEPS.cells.tolist())}
+    old = [*pairwise(STEPS.boundary.tolist()), *pairwise(STEPS.interior.tolist())]
+    gone = {frozenset(map(tuple, link)) for link in old} - merged
+    assert all(link <= square for link in gone)
+    assert 1 <= len(gone) <= 2  # the cycle may be cut where its list of cells begins
+
+
+def test_the_board_marks_every_cell_of_the_cycle():
+    _, board = draw.checkerboard(SLAB, STEPS).axes
+    assert lines_of(board)[1] == STEPS.boundary.tolist()
+
+
+def test_a_contraction_shows_its_pair():
+    path = lu.layered_path(lu.VoxelSolid(np.ones((6, 6, 3), bool)))
+    pairs = contraction_pairs(path, keep=np.zeros((6, 6, 3), bool)).tolist()
+    before, after = draw.contraction(path, tuple(pairs[0])).axes
+    assert lines_of(before)[0] == path.voxels[pairs[0], :2].tolist()
+    assert len(after.collections) == len(before.collections) + 1
+    with pytest.raises(ValueError, match="form a contraction pair"):
+        draw.contraction(path, (0, 1))
+
+
+def test_layering_needs_a_layered_path():
+    solid = lu.VoxelSolid(np.ones((3, 3, 3), bool))
+    with pytest.raises(ValueError, match="has no visits"):
+        draw.layering(lu.layered_path(solid, "free3d", sweeps=10), solid)

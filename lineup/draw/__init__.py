@@ -6,6 +6,20 @@ Each function returns a matplotlib figure; `save` writes it.
 from .files import save
 from .moments import unfolding
 from .plans import layers, reeb
-from .scenes import chain, contact_sheet, solid
+from .regions import checkerboard, contraction, merge, planar_steps
+from .scenes import chain, contact_sheet, layering, solid
 
-__all__ = ["chain", "contact_sheet", "layers", "reeb", "save", "solid", "unfolding"]
+__all__ = [
+    "chain",
+    "checkerboard",
+    "contact_sheet",
+    "contraction",
+    "layering",
+    "layers",
+    "merge",
+    "planar_steps",
+    "reeb",
+    "save",
+    "solid",
+    "unfolding",
+]

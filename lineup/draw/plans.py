@@ -43,9 +43,16 @@ def reeb(graph: ReebGraph, traversal: Traversal) -> Figure:
     >>> [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
     ['MSP, 2 nodes', '1 MSC', 'edge not walked']
     """
-    place = _places(graph)
     figure = page(7, 6)
     axes = figure.add_axes((0.09, 0.1, 0.88, 0.87))
+    reeb_axes(axes, graph, traversal)
+    axes.legend(handles=reeb_key(traversal), loc="best", frameon=False)
+    return figure
+
+
+def reeb_axes(axes: Axes, graph: ReebGraph, traversal: Traversal) -> None:
+    """Draw what `reeb` draws into given axes, but for the key."""
+    place = _places(graph)
     ways: list[tuple[Sequence[int], str, float]] = [
         (cycle, _MSCS[k % len(_MSCS)], 3.0) for k, cycle in enumerate(traversal.mscs)
     ]
@@ -64,13 +71,11 @@ def reeb(graph: ReebGraph, traversal: Traversal) -> Figure:
         axes.annotate(
             word, place[node], (14, 0), textcoords="offset points", va="center", color=_MSP
         )
-    _legend(axes, traversal)
     axes.set_ylabel("layer", color=INK)
     axes.set_xlabel("one circle a node, the larger the more voxels", color=GREY)
     axes.set_xticks([])
     axes.spines[["top", "right", "bottom"]].set_visible(False)
     axes.margins(0.08)
-    return figure
 
 
 def _places(graph: ReebGraph) -> FloatArray:
@@ -110,14 +115,15 @@ def _nodes(axes: Axes, graph: ReebGraph, place: FloatArray, shade: dict[int, str
             axes.text(x, y, str(node), ha="center", va="center", fontsize=8, color=INK, zorder=4)
 
 
-def _legend(axes: Axes, traversal: Traversal) -> None:
+def reeb_key(traversal: Traversal) -> list[Line2D]:
+    """Handles for the key of a Reeb graph."""
     n = len(traversal.mscs)
     entries = [Line2D([], [], color=_MSP, lw=5, label=f"MSP, {len(traversal.msp)} nodes")]
     if n:
         word = "MSC" if n == 1 else "MSCs, a colour each"
         entries.append(Line2D([], [], color=_MSCS[0], lw=3, label=f"{n} {word}"))
     entries.append(Line2D([], [], color=GREY, lw=1, ls=":", label="edge not walked"))
-    axes.legend(handles=entries, loc="best", frameon=False)
+    return entries
 
 
 def layers(path: VoxelPath, solid: VoxelSolid, layers: Iterable[int] | None = None) -> Figure:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
+from ..reeb import Traversal, reeb_graph
 from ..solid import Folding, VoxelPath, VoxelSolid
 from .bodies import chain_body, left_out_body, solid_body
-from .page import GREY, caption, page, picture, positions
+from .page import GREY, INK, caption, page, picture, positions
+from .plans import reeb_axes, reeb_key
 from .view import ELEVATION_DEG, Body, colours, view_of
 
 _COLUMNS, _CELL, _FOOT = 5, 3.3, 0.5  # of a contact sheet: cells to a row; inches
@@ -71,6 +74,57 @@ def chain(
     if solid is not None:
         bodies.insert(0, left_out_body(solid, pose))
     return _one(bodies, azimuth_deg, elevation_deg)
+
+
+def layering(path: VoxelPath, solid: VoxelSolid) -> Figure:
+    """From a solid over its Reeb graph and its traversal to a layered path (Figure 4).
+
+    Parameters
+    ----------
+    path : VoxelPath
+        A strictly layered path: its visits are the traversal, nodes that it leaves out apart.
+
+    Raises
+    ------
+    ValueError
+        If the path has no visits.
+
+    Examples
+    --------
+    >>> import numpy as np, lineup as lu
+    >>> from lineup import draw
+    >>> solid = lu.VoxelSolid(np.ones((4, 3, 2), bool))
+    >>> figure = draw.layering(lu.layered_path(solid), solid)
+    >>> [axes.get_title() for axes in figure.axes]
+    ['a  solid', 'b  Reeb graph and traversal', 'c  layered path']
+    """
+    if not len(path.visits):
+        raise ValueError(f"a path by {path.method!r} has no visits; give a layered one")
+    figure = page(14, 5)
+    view = view_of(solid_body(solid).points).widened(0.85)
+    left = picture(figure, (0, 0, 0.33, 0.94), [solid_body(solid)], view)
+    middle = figure.add_axes((0.38, 0.18, 0.26, 0.72))
+    reeb_axes(middle, reeb_graph(solid), _traversal(path))
+    key = reeb_key(_traversal(path))
+    middle.legend(
+        handles=key, loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=3, frameon=False
+    )
+    right = picture(figure, (0.67, 0, 0.33, 0.94), [chain_body(positions(path))], view)
+    for axes, title in zip(
+        (left, middle, right),
+        ("a  solid", "b  Reeb graph and traversal", "c  layered path"),
+        strict=True,
+    ):
+        axes.set_title(title, fontsize=13, fontweight="bold", color=INK)
+    return figure
+
+
+def _traversal(path: VoxelPath) -> Traversal:
+    """The traversal that the visits of a path are."""
+    nodes = tuple(path.visits[:, 2].tolist())
+    on_msp = np.flatnonzero(path.visits[:, 3] == 0).tolist()
+    mscs = tuple(nodes[a : b + 1] for a, b in pairwise(on_msp) if nodes[a] == nodes[b])
+    return Traversal(nodes, tuple(dict.fromkeys(nodes[k] for k in on_msp)), mscs)
 
 
 def contact_sheet(
