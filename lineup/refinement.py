@@ -64,7 +64,7 @@ def _split(occupancy: grid.BoolArray, k: int) -> grid.BoolArray:
 
 
 def refined_path(solid: VoxelSolid, seed: int) -> VoxelPath:
-    """All of the solid refined 2 x 2 x 2, in nested layers; time and memory are linear.
+    """All of the solid refined 2 x 2 x 2, in nested layers.
 
     Every voxel v has two cycles, the squares b(v) of its lower and t(v) of its upper layer. Take
     a spanning tree of each node of the Reeb graph and one of the graph itself. A link from v up
@@ -75,7 +75,8 @@ def refined_path(solid: VoxelSolid, seed: int) -> VoxelPath:
     below is joined in the upper layer, where this side is free, any other in the lower layer.
     So no edge is used twice, and these are 2n - 1 joins that connect the 2n squares: one cycle.
     The joins form a tree, so every excursion to another layer comes back beside where it left
-    (Section 4.2, Case 2). Both ends lie side by side in the top layer.
+    (Section 4.2, Case 2). Both ends lie side by side in the top layer. Time is linear but for
+    the sorting that draws the trees; memory is linear in the grid.
 
     A cycle that has each node in one piece need not exist: in the plus of five voxels, refined,
     no path through all cells joins two neighbours in the middle, as a tower there would need.
@@ -99,7 +100,7 @@ def refined4_path(solid: VoxelSolid, seed: int) -> VoxelPath:
     neighbour; the n - 1 joins along any spanning tree make one cycle. Every unit square lies in
     four cubes around a line, and joins of other cubes only take edges from it: so no U comes
     about, because none does in the 16 ways to join four such cubes, for each of the three axes.
-    Time and memory are linear.
+    Time and memory are as those of `refined_path`.
     """
     net = _network(solid, seed, layers_first=False)
     links = _blocks(solid, 4, [(_CUBE, (0, 0, 0))])
