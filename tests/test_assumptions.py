@@ -59,7 +59,7 @@ def linked(nodes, traversal):
     return held
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(st.integers(0, 2**32).map(blob) | polycubes(60))
 def test_every_row_is_what_the_definitions_say(occupancy):
     solid = lu.VoxelSolid(occupancy)

@@ -42,7 +42,7 @@ class Layer:
         self.inner = self.kept - self.boundary
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(solids, st.integers(0, 3))
 def test_paths_are_certified_and_every_node_is_accounted_for(solid, seed):
     if solid.size < 2:
@@ -72,7 +72,7 @@ def test_paths_are_certified_and_every_node_is_accounted_for(solid, seed):
     assert found.path.method == said.format(*counts)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(st.integers(0, 2**32).map(blob).map(lu.VoxelSolid), st.integers(0, 3))
 def test_algorithm_2_keeps_what_the_paper_says_and_ends_where_it_says(solid, seed):
     found = lu.algorithm3(solid, seed)

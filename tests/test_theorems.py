@@ -35,7 +35,7 @@ def enlarged(occupancy, side, height):
     return np.kron(occupancy, np.ones((side, side, height), bool))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(st.integers(0, 2**32).map(blob).map(lu.VoxelSolid), st.integers(0, 9))
 def test_theorems_4_2_and_4_3_every_planar_path_is_even(solid, seed):
     """In every node whose ends could be drawn as specified, on the MSP and in MSCs."""
