@@ -13,6 +13,7 @@ import numpy as np
 
 from ._options import checked
 from .linking import Effort, assembled, layers, linked, promising_plan
+from .paper import algorithm3
 from .refinement import REFINED
 from .solid import VoxelPath, VoxelSolid
 from .spatial import free3d, nested, ufree
@@ -34,7 +35,7 @@ def layered_path(
         MSPs tried; `sweeps` (100), length of each planar search, see `planar.long_path`;
         `both_ends_on_top` (False), put both ends in one node, as high up as can be.
         ``"refined"`` and ``"refined4"`` have none: they visit all of ``refine(solid, 2)``, and
-        all of ``refine(solid, 4)`` without a U.
+        all of ``refine(solid, 4)`` without a U. Nor has ``"paper"``, see `algorithm3`.
 
     Returns
     -------
@@ -120,11 +121,16 @@ def _nested(
     return nested(path, solid, sweeps, surface_weight, seed)
 
 
+def _paper(solid: VoxelSolid, seed: int) -> VoxelPath:
+    return algorithm3(solid, seed).path
+
+
 PATH_METHODS: dict[str, Callable[..., VoxelPath]] = {
     "layered": _layered,
     "nested": _nested,
     "free3d": free3d,
     "ufree": ufree,
+    "paper": _paper,
     **REFINED,
 }
 """The path methods by name: functions of a solid, a seed and keyword-only options."""

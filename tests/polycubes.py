@@ -6,6 +6,7 @@ import numpy as np
 from hypothesis import assume
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from lineup import grid
 
@@ -28,3 +29,12 @@ def polycubes(draw: Any, max_voxels: int = 40) -> NDArray[np.bool_]:
     occupancy[tuple(points.T)] = True
     assume(not grid.voids(occupancy).any())
     return occupancy
+
+
+def blob(seed: int, side: int = 12) -> NDArray[np.bool_]:
+    """The largest part of thresholded noise, its voids filled: layers with interiors, limbs."""
+    rng = np.random.default_rng(seed)
+    noise = ndimage.gaussian_filter(rng.random((side,) * 3), rng.uniform(1, 3, 3))
+    label, _ = grid.components(noise > np.quantile(noise, rng.uniform(0.3, 0.7)))
+    part: NDArray[np.bool_] = label == np.bincount(label.ravel())[1:].argmax() + 1
+    return part | grid.voids(part)

@@ -107,7 +107,7 @@ def paper_path(mask: BoolArray, start: Cell, end: Cell, seed: int = 0) -> PaperP
     >>> len(path), len(path.boundary), len(path.interior), path.reasons
     (20, 14, 6, ())
     """
-    cells, removed = _without_dangling(connected_cells(mask), mask)
+    cells, removed = without_dangling(connected_cells(mask), mask)
     check_ends(mask, start, end)
     if not cells:
         return _failed(removed, DANGLING_ATE_REGION)
@@ -139,7 +139,7 @@ def paper_path(mask: BoolArray, start: Cell, end: Cell, seed: int = 0) -> PaperP
     )
 
 
-def _without_dangling(cells: set[Cell], mask: BoolArray) -> tuple[set[Cell], list[Cell]]:
+def without_dangling(cells: set[Cell], mask: BoolArray) -> tuple[set[Cell], list[Cell]]:
     """The cells that stay when dangling voxels go, over and over, and those that go.
 
     Both neighbours of a voxel on the walk round the boundary are boundary voxels. So a dangling
