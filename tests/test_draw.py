@@ -313,7 +313,7 @@ def test_plans_of_a_refined_path_and_of_missing_layers(solid):
 @settings(max_examples=30)
 def test_nodes_stand_at_their_layer_and_apart(occupancy):
     graph = lu.reeb_graph(lu.VoxelSolid(occupancy))
-    place = plans._places(graph)
+    place = plans.places(graph)
     assert np.array_equal(place[:, 1], graph.layer_of)
     for layer in np.unique(graph.layer_of):
         across = np.sort(place[graph.layer_of == layer, 0])
@@ -332,6 +332,29 @@ def test_the_reeb_graph_shows_msp_and_mscs():
     drawn = [len(c.get_segments()) for c in figure.axes[0].collections[:-1]]
     steps = [len(nodes) - 1 for nodes in (*traversal.mscs, traversal.msp)]
     assert drawn == [len(graph.edges), *steps]
+
+
+def test_the_decomposition_draws_every_step_and_the_largest_mscs_apart():
+    table = np.zeros((15, 1, 4), bool)
+    table[:, :, 1] = True
+    for k in range(8):
+        table[2 * k, 0, 0] = True
+    table[4, 0, 2:] = table[0, 0, 2] = True
+    graph = lu.reeb_graph(lu.VoxelSolid(table))
+    traversal = lu.traverse(graph)
+    whole, *parts = draw.decomposition(graph, traversal).axes
+    assert len(traversal.mscs) == 8
+    assert whole.get_title().endswith("\n3 more MSCs not drawn apart")
+    assert [axes.get_title() for axes in parts[1:]] == [
+        f"MSC $C_{{{k}}}$, 2 nodes at {traversal.mscs[k - 1][0]}" for k in range(1, 6)
+    ]
+
+    def n_arrows(axes):
+        return sum(text.arrow_patch is not None for text in axes.texts if hasattr(text, "xyann"))
+
+    assert n_arrows(whole) == len(traversal.walk) - 1
+    shown = [traversal.msp, *traversal.mscs[:5]]
+    assert list(map(n_arrows, parts)) == [len(nodes) - 1 for nodes in shown]
 
 
 def test_one_warning_where_vtk_cannot_draw(monkeypatch):

@@ -3,6 +3,7 @@
 Each function returns a matplotlib figure; `save` writes it.
 """
 
+from .decomposition import decomposition
 from .files import save
 from .moments import unfolding
 from .plans import layers, reeb
@@ -14,6 +15,7 @@ __all__ = [
     "checkerboard",
     "contact_sheet",
     "contraction",
+    "decomposition",
     "layering",
     "layers",
     "merge",

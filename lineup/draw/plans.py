@@ -19,8 +19,8 @@ from ..solid import VoxelPath, VoxelSolid
 from .page import GREY, INK, PALE, page
 from .view import colours
 
-_MSP = "#c1272d"
-_MSCS = ["#1f77b4", "#2ca02c", "#ff7f0e", "#9467bd", "#17becf", "#8c564b", "#bcbd22", "#e377c2"]
+MSP = "#c1272d"
+MSCS = ["#1f77b4", "#2ca02c", "#ff7f0e", "#9467bd", "#17becf", "#8c564b", "#bcbd22", "#e377c2"]
 _MOST_NUMBERED = 60
 _PLAN, _KEY = 3.6, 0.5  # inches: width of a plan, height of the key
 _VOXEL, _LEFT_OUT = "#eeeae2", "#ffffff"
@@ -52,9 +52,9 @@ def reeb(graph: ReebGraph, traversal: Traversal) -> Figure:
 
 def reeb_axes(axes: Axes, graph: ReebGraph, traversal: Traversal) -> None:
     """Draw what `reeb` draws into given axes, but for the key."""
-    place = _places(graph)
+    place = places(graph)
     ways: list[tuple[Sequence[int], str, float]] = [
-        (cycle, _MSCS[k % len(_MSCS)], 3.0) for k, cycle in enumerate(traversal.mscs)
+        (cycle, MSCS[k % len(MSCS)], 3.0) for k, cycle in enumerate(traversal.mscs)
     ]
     axes.add_collection(
         LineCollection(
@@ -62,14 +62,14 @@ def reeb_axes(axes: Axes, graph: ReebGraph, traversal: Traversal) -> None:
         )
     )
     shade: dict[int, str] = {}
-    for nodes, colour, width in [*ways, (traversal.msp, _MSP, 5.0)]:
+    for nodes, colour, width in [*ways, (traversal.msp, MSP, 5.0)]:
         lines = [place[list(step)] for step in pairwise(nodes)]
         axes.add_collection(LineCollection(lines, colors=[colour], linewidths=width, zorder=2))
         shade |= dict.fromkeys(nodes, colour)
     _nodes(axes, graph, place, shade)
     for word, node in (("start", traversal.walk[0]), ("end", traversal.walk[-1])):
         axes.annotate(
-            word, place[node], (14, 0), textcoords="offset points", va="center", color=_MSP
+            word, place[node], (14, 0), textcoords="offset points", va="center", color=MSP
         )
     axes.set_ylabel("layer", color=INK)
     axes.set_xlabel("one circle a node, the larger the more voxels", color=GREY)
@@ -78,8 +78,8 @@ def reeb_axes(axes: Axes, graph: ReebGraph, traversal: Traversal) -> None:
     axes.margins(0.08)
 
 
-def _places(graph: ReebGraph) -> FloatArray:
-    """Where each node stands: (N, 2), its layer upwards."""
+def places(graph: ReebGraph, apart: float = 1.2) -> FloatArray:
+    """Where each node stands: (N, 2), its layer upwards, nodes of a layer so far apart."""
     voxels = np.argwhere(graph.node_of >= 0)
     node = graph.node_of[tuple(voxels.T)]
     wide = int(np.argmax(np.ptp(voxels[:, :2], axis=0)))
@@ -88,7 +88,7 @@ def _places(graph: ReebGraph) -> FloatArray:
     for layer in np.unique(graph.layer_of):
         there = np.flatnonzero(graph.layer_of == layer)
         ranked = there[np.argsort(across[there], kind="stable")]
-        across[ranked] = _spread(across[ranked], apart=1.2)
+        across[ranked] = _spread(across[ranked], apart)
     return np.stack([across, graph.layer_of.astype(float)], axis=1)
 
 
@@ -118,10 +118,10 @@ def _nodes(axes: Axes, graph: ReebGraph, place: FloatArray, shade: dict[int, str
 def reeb_key(traversal: Traversal) -> list[Line2D]:
     """Handles for the key of a Reeb graph."""
     n = len(traversal.mscs)
-    entries = [Line2D([], [], color=_MSP, lw=5, label=f"MSP, {len(traversal.msp)} nodes")]
+    entries = [Line2D([], [], color=MSP, lw=5, label=f"MSP, {len(traversal.msp)} nodes")]
     if n:
         word = "MSC" if n == 1 else "MSCs, a colour each"
-        entries.append(Line2D([], [], color=_MSCS[0], lw=3, label=f"{n} {word}"))
+        entries.append(Line2D([], [], color=MSCS[0], lw=3, label=f"{n} {word}"))
     entries.append(Line2D([], [], color=GREY, lw=1, ls=":", label="edge not walked"))
     return entries
 
