@@ -92,6 +92,7 @@ def check_reasons(row):
     reasons = set(row.reasons.split(", ")) - {""}
     assert reasons <= set(REASONS)
     assert row.met == all(getattr(row, name) for name in ASSUMPTIONS) == (not reasons)
+    assert row.listed == all(getattr(row, name) for name in ASSUMPTIONS if name != "regular")
     for name, codes in ASSUMPTIONS.items():
         assert getattr(row, name) == (not reasons & set(codes))
 
@@ -189,7 +190,9 @@ def test_the_summary_adds_up():
         nodes = lu.audit(solid)
         assert row.voxels == solid.size == nodes["voxels"].sum()
         assert row.nodes == len(nodes)
-        assert row.nodes_met == pytest.approx(nodes["met"].sum() / len(nodes))
-        assert row.voxels_met == pytest.approx((nodes["met"] * nodes["voxels"]).sum() / solid.size)
+        for kind in ("listed", "met"):
+            voxels = (nodes[kind] * nodes["voxels"]).sum()
+            assert getattr(row, f"nodes_{kind}") == pytest.approx(nodes[kind].sum() / len(nodes))
+            assert getattr(row, f"voxels_{kind}") == pytest.approx(voxels / solid.size)
         for name in ASSUMPTIONS:
             assert getattr(row, name) == pytest.approx(nodes[name].sum() / len(nodes))

@@ -16,9 +16,6 @@ from regions import comb, graph_of
 import lineup as lu
 from lineup.tables import PAPER
 
-LISTED = ["interior_exists", "interior_connected", "boundary_cycle", "no_hole", "linked"]
-"""What Sections 4.1 and 4.4 assume; that the interior is regular, they leave to the reader."""
-
 
 def bound(n):
     """Theorem 4.4."""
@@ -82,7 +79,7 @@ def test_theorem_4_4_on_a_cylinder_and_a_ball():
 def test_an_even_path_through_a_plate_of_15_voxels_is_shorter_than_theorem_4_4_says():
     """The longest even path of all, by trying them all, and the listed assumptions hold."""
     occupancy = np.ones((3, 5, 1), bool)
-    assert lu.audit(lu.VoxelSolid(occupancy))[LISTED].all(axis=None)
+    assert lu.audit(lu.VoxelSolid(occupancy))["listed"].all()
     longest = longest_path(voxel_graph(occupancy))
     assert longest - longest % 2 == 14 < bound(15)
 
@@ -110,7 +107,7 @@ def test_theorem_4_4_fails_on_a_solid_comb():
     mask = comb(6, 12)
     solid = lu.VoxelSolid(np.repeat(mask[:, :, None], 3, axis=2))
     nodes = lu.audit(solid)
-    assert nodes[LISTED].all(axis=None)
+    assert nodes["listed"].all()
     assert not nodes["regular"].any()
     boundary = outermost_boundary(mask)
     tree = graph_of(mask & ~boundary)
