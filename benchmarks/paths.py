@@ -58,7 +58,7 @@ def peers(
                 row["seconds_to_layered"] = row["seconds"] / layered
                 typer.echo("{solid} {voxels}, {method}: {path}, {seconds:.2f} s".format(**row))
             rows += block
-    write(pd.DataFrame(rows), out, "paths")
+            write(pd.DataFrame(rows), out, "paths")
 
 
 @app.command()
@@ -87,11 +87,11 @@ def growth(
             typer.echo("{method}, {voxels}: {visited}, {seconds:.2f} s".format(**rows[-1]))
             if seconds > limit:
                 break
-    table = pd.DataFrame(rows)
-    fits = exponents(table)
-    write(table, out, "growth")
-    write(fits, out, "exponents")
-    draw(table, fits, out / "growth.png")
+        table = pd.DataFrame(rows)
+        fits = exponents(table)
+        write(table, out, "growth")
+        write(fits, out, "exponents")
+        draw(table, fits, out / "growth.png")
 
 
 def chosen(methods: list[str] | None, known: list[str]) -> list[str]:
