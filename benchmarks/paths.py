@@ -195,7 +195,7 @@ def printed(value: object) -> str:
 
 def draw(table: pd.DataFrame, fits: pd.DataFrame, file: Path) -> None:
     """Seconds against voxels, both logarithmic, with the slopes of n and of n^2."""
-    figure = Figure(figsize=(7, 5), layout="constrained")
+    figure = Figure(figsize=(8, 5), layout="constrained")
     axes = figure.add_subplot(xscale="log", yscale="log", xlabel="voxels n", ylabel="seconds")
     slopes = fits.set_index("method")["exponent"]
     for method, runs in table.groupby("method", sort=False):
@@ -205,7 +205,7 @@ def draw(table: pd.DataFrame, fits: pd.DataFrame, file: Path) -> None:
     for power, style in ((1, "--"), (2, ":")):
         line = table["seconds"].min() * (n / n[0]) ** power
         axes.plot(n, line, style, color="0.6", label=f"as n^{power}")
-    axes.legend()
+    figure.legend(loc="outside right upper")
     axes.grid(alpha=0.3)
     figure.savefig(file, dpi=120)
 
