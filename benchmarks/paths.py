@@ -58,7 +58,7 @@ def peers(
                 row["seconds_to_layered"] = row["seconds"] / layered
                 typer.echo("{solid} {voxels}, {method}: {path}, {seconds:.2f} s".format(**row))
             rows += block
-    write(pd.DataFrame(rows), out, "paths")
+            write(pd.DataFrame(rows), out, "paths")
 
 
 @app.command()
@@ -87,11 +87,11 @@ def growth(
             typer.echo("{method}, {voxels}: {visited}, {seconds:.2f} s".format(**rows[-1]))
             if seconds > limit:
                 break
-    table = pd.DataFrame(rows)
-    fits = exponents(table)
-    write(table, out, "growth")
-    write(fits, out, "exponents")
-    draw(table, fits, out / "growth.png")
+        table = pd.DataFrame(rows)
+        fits = exponents(table)
+        write(table, out, "growth")
+        write(fits, out, "exponents")
+        draw(table, fits, out / "growth.png")
 
 
 def chosen(methods: list[str] | None, known: list[str]) -> list[str]:
@@ -195,7 +195,7 @@ def printed(value: object) -> str:
 
 def draw(table: pd.DataFrame, fits: pd.DataFrame, file: Path) -> None:
     """Seconds against voxels, both logarithmic, with the slopes of n and of n^2."""
-    figure = Figure(figsize=(7, 5), layout="constrained")
+    figure = Figure(figsize=(8, 5), layout="constrained")
     axes = figure.add_subplot(xscale="log", yscale="log", xlabel="voxels n", ylabel="seconds")
     slopes = fits.set_index("method")["exponent"]
     for method, runs in table.groupby("method", sort=False):
@@ -205,7 +205,7 @@ def draw(table: pd.DataFrame, fits: pd.DataFrame, file: Path) -> None:
     for power, style in ((1, "--"), (2, ":")):
         line = table["seconds"].min() * (n / n[0]) ** power
         axes.plot(n, line, style, color="0.6", label=f"as n^{power}")
-    axes.legend()
+    figure.legend(loc="outside right upper")
     axes.grid(alpha=0.3)
     figure.savefig(file, dpi=120)
 
