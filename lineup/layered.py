@@ -7,6 +7,7 @@ MSP, by tens of percent where the solid has handles, so several of both are trie
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -33,7 +34,10 @@ def layered_path(
     options
         Keyword options of the method. Those of ``"layered"``: `starts` (4), spanning trees and
         MSPs tried; `sweeps` (100), length of each planar search, see `planar.long_path`;
-        `both_ends_on_top` (False), put both ends in one node, as high up as can be.
+        `both_ends_on_top` (False), put both ends in one node, as high up as can be. Those of
+        ``"nested"``, ``"free3d"`` and ``"ufree"``, which anneal a layered path: `starts` for that
+        path; `sweeps` (6000, 3000, 10000), proposals for each voxel; `surface_weight` (1.5),
+        worth of a surface voxel, an interior one being 1.
         ``"refined"`` and ``"refined4"`` have none: they visit all of ``refine(solid, 2)``, and
         all of ``refine(solid, 4)`` without a U. Nor has ``"paper"``, see `algorithm3`.
 
@@ -108,17 +112,21 @@ def _layered(
     )[0]
 
 
-def _nested(
+def _annealed(
+    method: Callable[[VoxelPath, VoxelSolid, int, float, int], VoxelPath],
     solid: VoxelSolid,
     seed: int,
     *,
+    sweeps: int,
     starts: int = 4,
-    sweeps: int = 6000,
     surface_weight: float = 1.5,
-    both_ends_on_top: bool = False,
 ) -> VoxelPath:
-    path = _layered(solid, seed, starts=starts, both_ends_on_top=both_ends_on_top)
-    return nested(path, solid, sweeps, surface_weight, seed)
+    """A layered path annealed as a whole by `method`."""
+    for name, value, least in (("sweeps", sweeps, 1), ("surface_weight", surface_weight, 0)):
+        if value < least:
+            raise ValueError(f"{name} must be at least {least}, got {value}")
+    path = _layered(solid, seed, starts=starts)
+    return method(path, solid, sweeps, surface_weight, seed)
 
 
 def _paper(solid: VoxelSolid, seed: int) -> VoxelPath:
@@ -127,9 +135,9 @@ def _paper(solid: VoxelSolid, seed: int) -> VoxelPath:
 
 PATH_METHODS: dict[str, Callable[..., VoxelPath]] = {
     "layered": _layered,
-    "nested": _nested,
-    "free3d": free3d,
-    "ufree": ufree,
+    "nested": partial(_annealed, nested, sweeps=6000),
+    "free3d": partial(_annealed, free3d, sweeps=3000),
+    "ufree": partial(_annealed, ufree, sweeps=10000),
     "paper": _paper,
     **REFINED,
 }

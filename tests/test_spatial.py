@@ -72,12 +72,19 @@ def edges_on_squares(board, graph):
     return map(len, sides_of.values())
 
 
+def lay_first_link(board):
+    """A path of two voxels."""
+    start = int(np.flatnonzero(board.weight)[0])
+    beside = start + board.stride
+    _strands.lay(board, np.array([start, beside[board.weight[beside] > 0][0]]))
+
+
 def annealed(occupancy, seed, rounds=12, proposals=40):
     """A board after each of a few short, hot rounds."""
     solid = lu.VoxelSolid(occupancy)
     board = _solids.board_of(solid, 1.5)
     loops = _loops.loops_of(board.weight > 0, board.stride)
-    _solids.lay_first_link(board)
+    lay_first_link(board)
     rng = np.random.default_rng(seed)
     for _ in range(rounds):
         _anneal.anneal(board, loops, HOT, proposals, rng)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from .. import grid
 from ..solid import VoxelPath, VoxelSolid
-from ._strands import FREE, NO_DIRECTION, Board, lay
+from ._strands import FREE, NO_DIRECTION, Board
 
 MARGIN = 1
 
@@ -41,13 +41,6 @@ def _exits(occupancy: grid.BoolArray) -> NDArray[np.uint8]:
         outmost = inwards & (inwards.cumsum(axis=axis) == 1)
         bits |= (np.flip(outmost, axis) if direction < 3 else outmost).astype(np.uint8) << direction
     return bits
-
-
-def lay_first_link(board: Board) -> None:
-    """Lay a path of two voxels, from the first voxel that sees the outside."""
-    start = int(np.flatnonzero(board.exits)[0])
-    beside = start + board.stride
-    lay(board, np.array([start, beside[board.weight[beside] > 0][0]]))
 
 
 def cells_of(voxels: grid.IntArray, solid: VoxelSolid) -> NDArray[np.int64]:

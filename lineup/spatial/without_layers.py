@@ -7,8 +7,8 @@ import numpy as np
 from ..solid import VoxelPath, VoxelSolid
 from ._anneal import Stage, Terms, anneal
 from ._loops import loops_of
-from ._solids import board_of, even, lay_first_link, path_through
-from ._strands import drop_cycles, path_cells
+from ._solids import board_of, cells_of, even, path_through
+from ._strands import drop_cycles, lay, path_cells
 
 COOLING = Stage(Terms(0.6, 0.0, 0.3, 0.0), Terms(0.1, 0.0, 5.0, 0.0))
 
@@ -16,23 +16,18 @@ FILLING = Stage(Terms(0.2, 0.0, 20.0, 0.0), Terms(0.06, 0.0, 20.0, 0.0))
 
 
 def free3d(
-    solid: VoxelSolid, seed: int, *, sweeps: int = 3000, surface_weight: float = 1.5
+    path: VoxelPath, solid: VoxelSolid, sweeps: int, surface_weight: float, seed: int
 ) -> VoxelPath:
-    """A long path that ignores the layers: what the layers cost shows beside it.
+    """A long path that ignores the layers, annealed from any path of the solid.
 
-    It comes within a percent or two of `path_bound`, but nothing says that it unfolds.
-
-    Parameters
-    ----------
-    sweeps : int
-        Proposals for each voxel.
-    surface_weight : float
-        Worth of a surface voxel, an interior one being 1.
+    It comes within a percent or so of `path_bound`, and shows what the layers cost; but nothing
+    says that it unfolds. Where the solid is a net of thin rods, which rods the path runs along
+    is mostly what it was at the start.
     """
     rng = np.random.default_rng(seed)
     board = board_of(solid, surface_weight)
     loops = loops_of(board.weight > 0, board.stride)
-    lay_first_link(board)
+    lay(board, cells_of(path.voxels, solid))
     n = sweeps * solid.size
     anneal(board, loops, COOLING, n - n // 5, rng)
     drop_cycles(board)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..solid import VoxelPath, VoxelSolid
 from ._anneal import Stage, Terms, anneal
 from ._loops import loops_of
-from ._solids import board_of, lay_first_link, path_through
+from ._solids import board_of, cells_of, path_through
 from ._strands import Board, lay, path_cells
 
 HIDDEN = 5.0
@@ -25,25 +25,18 @@ FILLING = Stage(Terms(0.2, 1e4, 5.0, HIDDEN), Terms(0.06, 1e4, 20.0, HIDDEN))
 
 
 def ufree(
-    solid: VoxelSolid, seed: int, *, sweeps: int = 10000, surface_weight: float = 1.5
+    path: VoxelPath, solid: VoxelSolid, sweeps: int, surface_weight: float, seed: int
 ) -> VoxelPath:
-    """A long path without a U, one end of which at least sees the outside.
+    """A long path without a U, one end of which at least sees the outside, from any path.
 
     Annealing with a price on Us that rises until none pays; those left are cut short, which
     takes two voxels each and always ends without a U, and the rest of the time fills up what is
     free again without making any.
-
-    Parameters
-    ----------
-    sweeps : int
-        Proposals for each voxel.
-    surface_weight : float
-        Worth of a surface voxel, an interior one being 1.
     """
     rng = np.random.default_rng(seed)
     board = board_of(solid, surface_weight)
     loops = loops_of(board.weight > 0, board.stride)
-    lay_first_link(board)
+    lay(board, cells_of(path.voxels, solid))
     n = sweeps * solid.size
     anneal(board, loops, COOLING, n - n // 5, rng)
     cells = cut_short(path_cells(board), board)
