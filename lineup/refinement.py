@@ -23,6 +23,8 @@ from .visits import visits_of
 Links = NDArray[np.int8]
 """(X, Y, Z, 2): the two directions in which the cycle leaves each voxel."""
 
+STEPS = grid.DIRECTIONS
+
 UP = 2
 SIDES = np.array([0, 1, 3, 4])
 """The directions of the sides of a square: east, north, west, south."""
@@ -235,7 +237,7 @@ def _walk(
             step = links[x, y, z, 0]
             if step == back:
                 step = links[x, y, z, 1]
-        dx, dy, dz = grid.DIRECTIONS[step]
+        dx, dy, dz = STEPS[step]
         x, y, z = x + dx, y + dy, z + dz
     return voxels
 
