@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from pathlib import Path
 from typing import Annotated, Any
@@ -20,6 +21,7 @@ app = typer.Typer(add_completion=False, help=__doc__)
 
 SOLIDS = ["ball", "duck", "decocube"]
 PEER_SIZES = [150, 400, 1600]
+COVERAGE_SIZES = [1600, 6500]
 GROWTH_SIZES = [1000, 3000, 10_000, 30_000, 100_000]
 
 Sizes = Annotated[list[int], typer.Option("--voxels", help="Voxels of a solid; repeat for more.")]
@@ -31,6 +33,7 @@ Methods = Annotated[
 ]
 Out = Annotated[Path, typer.Option(help="Folder of the tables.")]
 
+U_FREE = {"ufree", "refined4"}
 WARM_UP = 40
 """Voxels of the ball that compiles the kernels before the clock runs."""
 QUICK = 0.5
@@ -94,6 +97,51 @@ def growth(
         draw(table, fits, out / "growth.png")
 
 
+@app.command()
+def coverage(
+    solid: Annotated[list[str] | None, typer.Option(help="A model; without it, all.")] = None,
+    voxels: Sizes = COVERAGE_SIZES,
+    method: Methods = None,
+    out: Out = Path("results"),
+) -> None:
+    """Our methods on every model: OUT/coverage.csv and .md, and their medians in OUT/medians.*."""
+    rows: list[dict[str, Any]] = []
+    for target in voxels:
+        for name in solid or models():
+            shape = solid_of(name, target)
+            for m in chosen(method, list(lu.PATH_METHODS)):
+                rows.append({"target": target} | measured(shape, m))
+                rows[-1]["gap"] = rows[-1]["bound"] - rows[-1]["coverage"]
+                typer.echo("{solid} {voxels}, {method}: {coverage:.4f}".format(**rows[-1]))
+            write(pd.DataFrame(rows).drop(columns="seconds_to_layered"), out, "coverage")
+            write(medians(pd.DataFrame(rows)), out, "medians")
+
+
+def models() -> list[str]:
+    """The meshes of the folder `LINEUP_MODELS`, without it the catalogue."""
+    folder = os.environ.get("LINEUP_MODELS")
+    meshes = sorted(file.stem for file in Path(folder).glob("*.ply")) if folder else []
+    return meshes or lu.models()["name"].tolist()
+
+
+def medians(table: pd.DataFrame) -> pd.DataFrame:
+    """For each method and target, over all models: coverage, surface, gap to the bound, seconds."""
+    return (
+        table.groupby(["target", "method"], sort=False)
+        .agg(
+            models=("coverage", "size"),
+            median_coverage=("coverage", "median"),
+            least_coverage=("coverage", "min"),
+            median_surface=("surface", "median"),
+            mean_gap=("gap", "mean"),
+            median_seconds=("seconds", "median"),
+            most_seconds=("seconds", "max"),
+            refused=("note", lambda notes: int((notes != "").sum())),
+        )
+        .reset_index()
+    )
+
+
 def chosen(methods: list[str] | None, known: list[str]) -> list[str]:
     unknown = sorted(set(methods or ()) - set(known))
     if unknown:
@@ -102,9 +150,11 @@ def chosen(methods: list[str] | None, known: list[str]) -> list[str]:
 
 
 def solid_of(name: str, voxels: int) -> lu.VoxelSolid:
-    """A model of the catalogue, or a ball about a voxel corner, of at most `voxels` voxels."""
-    if name != "ball":
+    """A model, a mesh of `LINEUP_MODELS`, or a ball about a voxel corner, of `voxels` at most."""
+    if name in set(lu.models()["name"]):
         return lu.model(name, voxels=voxels)
+    if name != "ball":
+        return lu.voxelize(Path(os.environ["LINEUP_MODELS"]) / f"{name}.ply", voxels, name=name)
     reach = int(np.cbrt(voxels) * 0.65) + 2
     odd = np.arange(1 - 2 * reach, 2 * reach, 2) ** 2
     squares = odd[:, None, None] + odd[:, None] + odd
@@ -144,7 +194,7 @@ def measured(solid: lu.VoxelSolid, method: str) -> dict[str, Any]:
         "path": pd.NA,
         "coverage": np.nan,
         "surface": np.nan,
-        "bound": lu.path_bound(solid) / solid.size,
+        "bound": lu.path_bound(solid, u_free=method == "ufree") / solid.size,
         "seconds": np.nan,
         "seconds_to_layered": np.nan,
         "note": "",
@@ -155,7 +205,7 @@ def measured(solid: lu.VoxelSolid, method: str) -> dict[str, Any]:
         (path, note), seconds = timed(method, solid)
     except ModuleNotFoundError as error:
         return row | {"note": f"not run: {error.name} is not installed"}
-    verdict = lu.certify_path(path, solid)
+    verdict = lu.certify_path(path, solid, u_free=method in U_FREE)
     surface = grid.surface(lu.refine(solid, path.refinement).occupancy)
     return row | {
         "path": len(path),

@@ -48,6 +48,20 @@ def test_growth_on_tiny_solids(tmp_path):
     assert pd.read_csv(tmp_path / "exponents.csv")["method"].tolist() == ["refined"]
 
 
+def test_coverage_on_a_tiny_solid(tmp_path):
+    methods = ["--method", "layered", "--method", "ufree"]
+    run("coverage", "--solid", "ball", "--voxels", 40, "--voxels", 60, *methods, "--out", tmp_path)
+    table = pd.read_csv(tmp_path / "coverage.csv")
+    ball = paths.solid_of("ball", 40)
+    bound = lu.path_bound(ball, u_free=True) / ball.size
+    row = table[(table["method"] == "ufree") & (table["target"] == 40)].iloc[0]
+    assert (row["bound"], row["gap"]) == (bound, bound - row["coverage"])
+    medians = pd.read_csv(tmp_path / "medians.csv")
+    assert medians["models"].tolist() == [1] * 4
+    assert medians["refused"].tolist() == [0] * 4
+    assert medians["median_coverage"].tolist() == table["coverage"].tolist()
+
+
 def test_a_slow_method_ends(tmp_path):
     sizes = ["--voxels", 8, "--voxels", 40, "--voxels", 60]
     run("growth", *sizes, "--method", "refined", "--limit", 0, "--out", tmp_path)
