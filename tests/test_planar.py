@@ -12,8 +12,7 @@ from regions import draw_ends, grown_regions
 
 import lineup as lu
 from lineup import planar
-from lineup.planar import _kernels as kernels
-from lineup.planar import paper
+from lineup.planar import _board, _search, paper
 
 
 @st.composite
@@ -95,31 +94,77 @@ def test_blocks_are_those_of_networkx(region, data):
 def test_toggles_keep_one_path_and_cycles(region, seed):
     """The change in cycles and weight that each toggle reports, against a recount."""
     rng = np.random.default_rng(seed)
-    board = kernels.Board(
-        region.width,
-        region.inside,
-        region.weight,
-        np.full((2, 2, region.inside.size), -1, np.int32),
-        np.zeros(0),
-        np.zeros(region.inside.size, np.uint8),
-        np.zeros(0, np.int32),
-    )
     start, end = region.cells[[0, -1]].tolist()
-    assert kernels.lay(board, start, end, -1, rng)
-    score, n_cycles = kernels.score_of(board), 0
-    for _ in range(60 if len(region.squares) else 0):
-        square = int(rng.choice(region.squares))
-        change, cycles = kernels.propose(board, square, 2.0, 0.5, rng)
+    board = laid_board(region, start, end, rng)
+    score, n_cycles = _board.score_of(board), 0
+    squares = np.flatnonzero(board.is_square)
+    assert squares.tolist() == squares_of(region)
+    for _ in range(60 if len(squares) else 0):
+        square = int(rng.choice(squares))
+        change, cycles = _search.propose(board, square, 2.0, 0.5, rng)
         score += change
         n_cycles += cycles
         links = linked_graph(board, region)
         assert n_cycles == nx.number_connected_components(links) - 1
         assert score == sum(region.weight[cell] for cell in links)
         assert {cell: 1 if cell in (start, end) else 2 for cell in links} == dict(links.degree)
-    kernels.drop_cycles(board, start)
+        check_holes(board, region, links)
+    _board.drop_cycles(board, start)
     links = linked_graph(board, region)
     assert nx.has_path(links, start, end)
     assert nx.is_connected(links)
+    check_holes(board, region, links)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_strands_are_followed_as_far_as_asked(seed):
+    """In every state: the change in cycles if within reach, else that it is not known."""
+    rng = np.random.default_rng(seed)
+    region = plate(8, 9)
+    board = laid_board(region, *region.cells[[0, -1]].tolist(), rng)
+    squares = np.flatnonzero(board.is_square)
+    n_known, n_unknown = 0, 0
+    for square in rng.choice(squares, 3000).tolist():
+        _search.propose(board, square, 1.0, 0.2, rng)
+        pattern = _board.sides(board, square)
+        if pattern in (5, 10):
+            n_cycles = nx.number_connected_components(linked_graph(board, region))
+            _board.toggle(board, square, pattern)
+            change = nx.number_connected_components(linked_graph(board, region)) - n_cycles
+            _board.toggle(board, square, pattern ^ 15)
+            assert _board.cycle_change(board, square, pattern, 10_000) == change
+            short = _board.cycle_change(board, square, pattern, _board.FIRST_LOOK)
+            assert short in (change, _board.UNKNOWN)
+            n_known += short == change
+            n_unknown += short == _board.UNKNOWN
+    assert n_known > 10
+    assert n_unknown > 10
+
+
+def plate(n_x, n_y):
+    inside = np.pad(np.ones((n_x, n_y), bool), 1)
+    return planar.region(inside.ravel(), np.ones(inside.size), inside.shape[1])
+
+
+def laid_board(region, start, end, rng):
+    wanted = np.full((2, 2, region.inside.size), -1, np.int32)
+    board = _board.new_board(region.width, region.inside, region.weight, wanted, np.zeros(0))
+    assert _search.lay(board, start, end, -1, rng)
+    return board
+
+
+def squares_of(region):
+    cells = set(region.cells.tolist())
+    steps = (0, 1, region.width, region.width + 1)
+    return [cell for cell in sorted(cells) if {cell + step for step in steps} <= cells]
+
+
+def check_holes(board, region, links):
+    holes = board.holes[: board.n_holes[0]].tolist()
+    assert sorted(holes) == sorted(set(region.cells.tolist()) - set(links))
+    where = np.full(region.inside.size, -1)
+    where[holes] = np.arange(len(holes))
+    assert (board.hole_at == where).all()
 
 
 def linked_graph(board, region):
@@ -134,8 +179,7 @@ def linked_graph(board, region):
 
 def test_a_wish_is_worth_a_detour():
     """A plate of 3 x 3 with a wish for the far side, which the heaviest path leaves out."""
-    inside = np.pad(np.ones((3, 3), bool), 1)
-    region = planar.region(inside.ravel(), np.ones(25), 5)
+    region = plate(3, 3)
     start, end = 6, 7
     rng = np.random.default_rng(0)
     for cell, axis in ((12, 0), (12, 1), (11, 1), (17, 0)):
@@ -171,13 +215,12 @@ def test_one_cell():
 
 @pytest.mark.parametrize("n", [4, 9, 16])
 def test_even_squares_are_filled(n):
-    inside = np.pad(np.ones((n, n + n % 2), bool), 1)
-    region = planar.region(inside.ravel(), np.ones(inside.size), inside.shape[1])
-    start = inside.shape[1] + 1
+    region = plate(n, n + n % 2)
+    start = region.width + 1
     path, _, limit = planar.long_path(
         region, start, start + 1, planar.NO_WISHES, 4, 100, np.random.default_rng(0)
     )
-    assert len(path) == limit == inside.sum()
+    assert len(path) == limit == len(region.cells)
 
 
 ONE_CELL_APART = np.array([[True, False, True]])

@@ -39,8 +39,6 @@ class Region:
         What covering a cell is worth.
     cells : (n,) int32
         The cells inside, ascending.
-    squares : (Q,) int32
-        First cells of the 2 x 2 blocks inside.
     head : (B,) int32
         For each block, its cell nearest to the first cell of the region: where it hangs.
     home : (N,) int32
@@ -55,7 +53,6 @@ class Region:
     inside: BoolArray
     weight: FloatArray
     cells: IntArray
-    squares: IntArray
     head: IntArray
     home: IntArray
     limit: list[tuple[Limit, Limit, Limit]]
@@ -75,7 +72,6 @@ class Region:
 def region(inside: BoolArray, weight: FloatArray, width: int) -> Region:
     """The region of the cells set in `inside`, (N,) on a flat grid with a margin."""
     cells = np.flatnonzero(inside).astype(np.int32)
-    square = inside[cells + 1] & inside[cells + width] & inside[cells + width + 1]
     head, home = _cut(inside, width, int(cells[0]), len(cells))
     limit = []
     order = cells[np.argsort(home[cells], kind="stable")]
@@ -84,7 +80,7 @@ def region(inside: BoolArray, weight: FloatArray, width: int) -> Region:
         members = np.append(order[first:last], head[block])
         colour = (members // width + members % width) % 2
         limit.append(_limits(weight[members[colour == 0]], weight[members[colour == 1]]))
-    return Region(width, inside, weight, cells, cells[square], head, home, limit)
+    return Region(width, inside, weight, cells, head, home, limit)
 
 
 def _limits(even: FloatArray, odd: FloatArray) -> tuple[Limit, Limit, Limit]:

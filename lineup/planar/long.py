@@ -11,10 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..grid import FloatArray, IntArray
-from ._kernels import Board, Schedule, search, unrolled
+from ._board import new_board, unrolled
+from ._search import Schedule, search
 from .blocks import Region, chain, chain_limit, reach
 
-SCHEDULE = Schedule(heat=(0.5, 0.1), cycle_cost=(0.5, 4.0), cold=(0.2, 0.1))
+SCHEDULE = Schedule(heat=(1.0, 0.3), cycle_cost=(0.2, 4.0), cold=(0.3, 0.1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,20 +68,11 @@ def long_path(
         return np.array([start], np.int32), weight, weight
     blocks = chain(region, start, end)
     inside = reach(region, blocks)
-    square = region.squares
     width = region.width
-    squares = square[inside[square] & inside[square + 1] & inside[square + width]]
     group_of, in_reach, ways = _groups(wishes, inside, width)
     limit = chain_limit(region, blocks, start)[1] + float(wishes.bonus[in_reach].sum())
-    board = Board(
-        width,
-        inside,
-        region.weight,
-        group_of,
-        wishes.bonus,
-        np.zeros(inside.size, np.uint8),
-        np.zeros(wishes.bonus.size, np.int32),
-    )
+    board = new_board(width, inside, region.weight, group_of, wishes.bonus)
+    squares = np.flatnonzero(board.is_square).astype(np.int32)
     score, links = search(
         board,
         squares,
