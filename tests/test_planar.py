@@ -129,9 +129,9 @@ def test_strands_are_followed_as_far_as_asked(seed):
         pattern = _board.sides(board, square)
         if pattern in (5, 10):
             n_cycles = nx.number_connected_components(linked_graph(board, region))
-            _board.toggle(board, square, pattern)
+            _board.toggle(board, square)
             change = nx.number_connected_components(linked_graph(board, region)) - n_cycles
-            _board.toggle(board, square, pattern ^ 15)
+            _board.toggle(board, square)
             assert _board.cycle_change(board, square, pattern, 10_000) == change
             short = _board.cycle_change(board, square, pattern, _board.FIRST_LOOK)
             assert short in (change, _board.UNKNOWN)

@@ -25,10 +25,13 @@ from numpy.typing import NDArray
 
 from .._jit import kernel
 
-OneLink = np.array([-1, 0, 1, -1, 2, -1, -1, -1, 3], dtype=np.int64)
+ONE_LINK = np.array([-1, 0, 1, -1, 2, -1, -1, -1, 3], dtype=np.int64)
 """Direction of the only bit set in a cell's links."""
 
-CyclesMade = np.array([0, -1, 0, 1], dtype=np.int64)
+BOTH_SIDES = np.array([0b0011, 0b0110, 0b1100, 0b1001], dtype=np.uint8)
+"""The links of each corner of a unit square along its two sides."""
+
+CYCLES_MADE = np.array([0, -1, 0, 1], dtype=np.int64)
 """By ``i ^ j`` where a strand joins corners i and j, the first link that goes being from 0 to 1."""
 
 END, UNKNOWN = 4, 5
@@ -132,16 +135,12 @@ def direction_of(width: int, difference: int) -> int:
 
 
 @kernel
-def flip_link(board: Board, cell: int, direction: int) -> float:
-    """Set or clear one link; the change in bonuses. The holes are left as they were."""
-    other = cell + step(board.width, direction)
-    board.links[cell] ^= np.uint8(1 << direction)
-    board.links[other] ^= np.uint8(1 << ((direction + 2) & 3))
-    is_set = (board.links[cell] >> direction) & 1
-    low = cell if direction < 2 else other
+def earned(board: Board, cell: int, axis: int) -> float:
+    """Count in the bonuses that the link from a cell along axis 0 or 1 has changed; their change."""
+    is_set = (board.links[cell] >> axis) & 1
     change = 0.0
     for slot in range(2):
-        group = board.wanted[slot, direction & 1, low]
+        group = board.wanted[slot, axis, cell]
         if group >= 0:
             if is_set:
                 board.n_set[group] += 1
@@ -152,6 +151,17 @@ def flip_link(board: Board, cell: int, direction: int) -> float:
                 if board.n_set[group] == 0:
                     change -= board.bonus[group]
     return change
+
+
+@kernel
+def set_link(board: Board, cell: int, direction: int) -> None:
+    """Set a link that is not set."""
+    other = cell + step(board.width, direction)
+    board.links[cell] |= np.uint8(1 << direction)
+    board.links[other] |= np.uint8(1 << ((direction + 2) & 3))
+    earned(board, cell if direction < 2 else other, direction & 1)
+    recount(board, cell)
+    recount(board, other)
 
 
 @kernel
@@ -195,20 +205,24 @@ def weight_change(board: Board, square: int, pattern: int) -> float:
 
 @kernel
 def follow(
-    board: Board, start: int, taken: int, corners: tuple[int, int, int, int], reach: int
+    links: NDArray[np.uint8],
+    width: int,
+    start: int,
+    taken: int,
+    corners: tuple[int, int, int, int],
+    reach: int,
 ) -> int:
     """Where the strand from `start`, not along direction `taken`, leads in `reach` steps at most.
 
     The number of the corner met, END if the path ends first, UNKNOWN if the steps do not suffice.
     """
-    links, width = board.links, board.width
     p, q, r, s = corners
     cell, back = start, taken
     for _ in range(reach):
         ahead = int(links[cell]) & ~(1 << back)
         if ahead == 0:
             return END
-        direction = OneLink[ahead]
+        direction = ONE_LINK[ahead]
         cell += step(width, direction)
         back = (direction + 2) & 3
         if cell == p:
@@ -249,28 +263,34 @@ def cycle_change(board: Board, square: int, pattern: int, reach: int) -> int:
         ended = -1
         for k in range(4):
             taken = turn if k in (0, 3) else turn + 2
-            met = follow(board, corners[k], taken & 3, corners, span)
+            met = follow(board.links, board.width, corners[k], taken & 3, corners, span)
             if met == END and ended < 0:
                 ended = k
             elif met == END:
-                return int(CyclesMade[k ^ ended])
+                return int(CYCLES_MADE[k ^ ended])
             elif met != UNKNOWN:
-                return int(CyclesMade[k ^ met])
+                return int(CYCLES_MADE[k ^ met])
         span *= 4
     return UNKNOWN
 
 
 @kernel
-def toggle(board: Board, square: int, pattern: int) -> float:
-    """Toggle the four sides of a square; the change in bonuses. Twice is no change."""
-    change = 0.0
-    for k in range(4):  # clear before setting, so that no cell ever has three links
-        if (pattern >> k) & 1:
-            change += flip_link(board, corner(board.width, square, k), k)
+def toggle(board: Board, square: int) -> float:
+    """Toggle the four sides of a square; the change in bonuses. Twice is no change.
+
+    The holes are left as they were: see `recount`.
+    """
+    width = board.width
     for k in range(4):
-        if not (pattern >> k) & 1:
-            change += flip_link(board, corner(board.width, square, k), k)
-    return change
+        board.links[corner(width, square, k)] ^= BOTH_SIDES[k]
+    if board.bonus.size == 0:
+        return 0.0
+    return (
+        earned(board, square, 0)
+        + earned(board, square + 1, 1)
+        + earned(board, square + width, 0)
+        + earned(board, square, 1)
+    )
 
 
 @kernel
@@ -293,7 +313,7 @@ def unrolled(links: NDArray[np.uint8], width: int, start: int) -> NDArray[np.int
     path[0] = start
     n, cell, ahead = 1, start, int(links[start])
     while ahead:
-        direction = OneLink[ahead]
+        direction = ONE_LINK[ahead]
         cell += step(width, direction)
         path[n] = cell
         n += 1
@@ -307,6 +327,4 @@ def drop_cycles(board: Board, start: int) -> None:
     path = unrolled(board.links, board.width, start)
     clear(board)
     for k in range(path.size - 1):
-        flip_link(board, path[k], direction_of(board.width, path[k + 1] - path[k]))
-    for cell in path:
-        recount(board, cell)
+        set_link(board, path[k], direction_of(board.width, path[k + 1] - path[k]))

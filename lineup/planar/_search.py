@@ -17,9 +17,9 @@ from ._board import (
     clear,
     cycle_change,
     drop_cycles,
-    flip_link,
     recount,
     score_of,
+    set_link,
     sides,
     step,
     toggle,
@@ -71,10 +71,10 @@ def propose(
     cycles = cycle_change(board, square, pattern, reach)
     if cycles == UNKNOWN:
         return 0.0, 0
-    gain += toggle(board, square, pattern)
+    gain += toggle(board, square)
     worth = gain - cycle_cost * cycles
     if worth < 0 and rng.random() >= np.exp(worth / heat):
-        toggle(board, square, pattern ^ 15)
+        toggle(board, square)
         return 0.0, 0
     if pattern not in (5, 10):
         for cell in (square, square + 1, square + board.width, square + board.width + 1):
@@ -147,10 +147,8 @@ def lay(board: Board, source: int, target: int, avoid: int, rng: np.random.Gener
         return False
     while target != source:
         direction = back[target]
-        flip_link(board, target, direction)
-        recount(board, target)
+        set_link(board, target, direction)
         target += step(board.width, direction)
-    recount(board, source)
     return True
 
 
@@ -219,8 +217,9 @@ def search(
 ) -> tuple[float, NDArray[np.uint8]]:
     """The best links of several annealed starts, and their score.
 
-    `effort` is (restarts, proposals in each); the first restart begins from a shortest path, the
-    others go through random cells of `ways`. The score is minus infinity if no path exists.
+    `effort` is (restarts, proposals in the last one), and each makes twice as many as the one
+    before: many boards are solved by a quick look. The first restart begins from a shortest path,
+    the others go through random cells of `ways`. The score is minus infinity if no path exists.
     """
     start, end = ends
     best_score = -np.inf
@@ -233,7 +232,8 @@ def search(
             clear(board)
             if not lay(board, start, end, -1, rng):
                 break
-        score = anneal_twice(board, squares, effort[1], schedule, ends, limit, trial, rng)
+        n_proposals = effort[1] >> (effort[0] - 1 - k)
+        score = anneal_twice(board, squares, n_proposals, schedule, ends, limit, trial, rng)
         if score > best_score:
             best_score = score
             best[:] = trial

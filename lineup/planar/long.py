@@ -54,7 +54,8 @@ def long_path(
     Parameters
     ----------
     restarts, sweeps : int
-        Annealed starts, and proposals for each 2 x 2 block in each of them.
+        Annealed starts, and proposals for each 2 x 2 block in the last of them; each start has
+        half as many as the next.
 
     Returns
     -------
