@@ -19,6 +19,9 @@ from .refinement import REFINED
 from .solid import VoxelPath, VoxelSolid
 from .spatial import free3d, nested, ufree
 
+ONE_START, SHORT_SEARCH = 20_000, 500_000
+"""Voxels beyond which one start is made, and beyond which its planar searches are half as long."""
+
 
 def layered_path(
     solid: VoxelSolid, method: str = "layered", seed: int = 0, **options: Any
@@ -32,9 +35,10 @@ def layered_path(
     seed : int
         The same solid, seed and options give the same path.
     options
-        Keyword options of the method. Those of ``"layered"``: `starts` (4), spanning trees and
-        MSPs tried; `sweeps` (100), length of each planar search, see `planar.long_path`;
-        `both_ends_on_top` (False), put both ends in one node, as high up as can be. Those of
+        Keyword options of the method. Those of ``"layered"``: `starts`, spanning trees and MSPs
+        tried (4; 1 for more than 20,000 voxels); `sweeps`, length of each planar search, see
+        `planar.long_path` (100; 50 for more than 500,000 voxels); `both_ends_on_top` (False),
+        put both ends in one node, as high up as can be. Those of
         ``"nested"``, ``"free3d"`` and ``"ufree"``, which anneal a layered path: `starts` for that
         path; `sweeps` (6000, 3000, 10000), proposals for each voxel; `surface_weight` (1.5),
         worth of a surface voxel, an interior one being 1.
@@ -69,8 +73,8 @@ def layered_paths(
     solid: VoxelSolid,
     seed: int = 0,
     *,
-    starts: int = 4,
-    sweeps: int = 100,
+    starts: int | None = None,
+    sweeps: int | None = None,
     both_ends_on_top: bool = False,
 ) -> list[VoxelPath]:
     """One layered path for each start, the longest first: varied starts for the planners.
@@ -84,6 +88,8 @@ def layered_paths(
     >>> [len(p) for p in layered_paths(lu.VoxelSolid(np.ones((4, 3, 2), bool)), starts=2)]
     [24, 24]
     """
+    starts = starts if starts is not None else 4 if solid.size <= ONE_START else 1
+    sweeps = sweeps if sweeps is not None else 100 if solid.size <= SHORT_SEARCH else 50
     for name, value, least in (("seed", seed, 0), ("starts", starts, 1), ("sweeps", sweeps, 1)):
         if value < least:
             raise ValueError(f"{name} must be at least {least}, got {value}")
@@ -103,8 +109,8 @@ def _layered(
     solid: VoxelSolid,
     seed: int,
     *,
-    starts: int = 4,
-    sweeps: int = 100,
+    starts: int | None = None,
+    sweeps: int | None = None,
     both_ends_on_top: bool = False,
 ) -> VoxelPath:
     return layered_paths(

@@ -1,6 +1,7 @@
 """Layered paths: what always holds, and how much they cover."""
 
 import os
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,7 +11,10 @@ from oracles import longest_path, voxel_graph
 from polycubes import polycubes
 
 import lineup as lu
+from lineup import grid, layered
 from lineup.layered import layered_paths
+from lineup.linking import Effort
+from lineup.linking.build import LARGE
 
 FAST = {"starts": 1, "sweeps": 5}
 TOWERS = [[0, 0], [0, 4], [4, 0]]
@@ -177,15 +181,53 @@ needs_models = pytest.mark.skipif(
 )
 
 
+FURTHER = ["cannon_field", "fertility"]
+"""Meshes of the folder that the catalogue does not name."""
+
+
 @needs_models
 @pytest.mark.slow
-def test_coverage_of_real_models():
-    coverage = {}
+@pytest.mark.parametrize(("voxels", "median", "least"), [(1600, 0.95, 0.88), (6500, 0.97, 0.92)])
+def test_coverage_of_real_models(voxels, median, least):
     models = lu.models()
-    for name in models["name"][models["source"] == "folder"]:
-        solid = lu.model(name, voxels=1600)
+    solids = {
+        name: lu.model(name, voxels=voxels) for name in models["name"][models["source"] == "folder"]
+    }
+    for name in FURTHER:
+        file = Path(os.environ["LINEUP_MODELS"]) / f"{name}.ply"
+        solids[name] = lu.voxelize(file, voxels=voxels)
+    coverage, kept = {}, {}
+    for name, solid in solids.items():
         path = lu.layered_path(solid)
         check(path, solid)
         coverage[name] = path.coverage(solid)
-    assert np.median(list(coverage.values())) >= 0.93, coverage
-    assert min(coverage.values()) >= 0.85, coverage
+        surface = grid.surface(solid.occupancy)
+        kept[name] = surface[tuple(path.voxels.T)].sum() / surface.sum()
+    assert np.median(list(coverage.values())) >= median, coverage
+    assert min(coverage.values()) >= least, coverage
+    assert np.median(list(kept.values())) >= median, kept
+
+
+@pytest.mark.slow
+def test_a_ball_of_a_hundred_thousand_voxels():
+    axis = np.arange(-29, 30) + 0.31
+    x, y, z = np.meshgrid(axis, axis, axis, indexing="ij")
+    solid = lu.VoxelSolid(x**2 + y**2 + z**2 <= 28.8**2)
+    path = lu.layered_path(solid)
+    check(path, solid)
+    assert path.coverage(solid) >= 0.99
+
+
+def test_large_solids_get_one_start(monkeypatch):
+    solid = lu.VoxelSolid(np.ones((4, 4, 2), bool))
+    assert len(layered_paths(solid)) == 4
+    monkeypatch.setattr(layered, "ONE_START", 31)
+    assert len(layered_paths(solid)) == 1
+    assert len(layered_paths(solid, starts=3)) == 3
+
+
+def test_large_regions_are_searched_less_often():
+    effort = Effort(restarts=4, sweeps=70, tries=3)
+    assert effort.on(10) == effort
+    assert effort.on(LARGE // 2) == Effort(restarts=2, sweeps=70, tries=2)
+    assert effort.on(2 * LARGE) == Effort(restarts=1, sweeps=70, tries=1)

@@ -10,7 +10,7 @@ the best of that node can be entered.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from ..solid import VoxelPath
 from .msp import Ends, Prospects
 from .rating import Plan
 from .shape import Layers
+
+LARGE = 4000
+"""Cells of a region from which on one search is enough."""
 
 
 @dataclass(frozen=True)
@@ -30,12 +33,17 @@ class Effort:
     restarts, sweeps : int
         Of each planar search, see `planar.long_path`.
     tries : int
-        Pairs of ends searched for each planar path.
+        Pairs of ends searched for each planar path at most.
     """
 
     restarts: int = 4
     sweeps: int = 100
     tries: int = 4
+
+    def on(self, n_cells: int) -> Effort:
+        """The effort on one region: chance evens out over a large one, and is tried less often."""
+        most = max(1, LARGE // n_cells)
+        return replace(self, restarts=min(self.restarts, most), tries=min(self.tries, most))
 
 
 @dataclass(eq=False)
@@ -66,7 +74,7 @@ def linked(
     last_colour = beginnings[0][0]
     ends = [ends for colour, ends in beginnings if colour == last_colour]
     for k, node in enumerate(plan.msp):
-        out.paths[node] = _best_path(shape, plan, node, ends[: effort.tries], effort, rng)
+        out.paths[node] = _best_path(shape, plan, node, ends, effort, rng)
         if k + 1 < len(plan.msp):
             ends = ahead.continuations(k + 1, int(out.paths[node][-1]), last_colour)
     queue = list(plan.msp)
@@ -85,8 +93,9 @@ def _best_path(
 ) -> grid.IntArray:
     """The best planar path of a node over some ends, with what these can lead to."""
     wishes = _wishes(shape, plan, node)
+    effort = effort.on(shape.size(node))
     best, best_total = np.empty(0, np.int32), -np.inf
-    for first, last, following, _ in ends:
+    for first, last, following, _ in ends[: effort.tries]:
         path, score, limit = planar.long_path(
             shape.regions[node], first, last, wishes, effort.restarts, effort.sweeps, rng
         )
@@ -125,7 +134,7 @@ def _link_hanging(
     out.excursions[node] = {}
     for child in (c for c in order if c in step_of):
         free = [k for k in candidates[child] if k == step_of[child] or k not in taken]
-        ends = [Ends(int(path[k]), int(path[k + 1]), 0.0, 0.0) for k in free[: effort.tries]]
+        ends = [Ends(int(path[k]), int(path[k + 1]), 0.0, 0.0) for k in free]
         out.paths[child] = _best_path(shape, plan, child, ends, effort, rng)
         step = int(np.flatnonzero(path == out.paths[child][0])[0])
         taken.discard(step_of[child])

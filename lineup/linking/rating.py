@@ -9,6 +9,8 @@ import numpy as np
 from .. import grid, planar
 from .shape import Layers
 
+NO_LINKS = np.empty((0, 2), np.int32)
+
 
 @dataclass(frozen=True, eq=False)
 class Plan:
@@ -58,14 +60,14 @@ def plan(shape: Layers, tree: list[list[int]], msp: list[int]) -> Plan:
 
 def _rate(shape: Layers, plan: Plan, node: int, above: int) -> None:
     """Fill in what a node is worth, once that is known of the nodes that hang off it."""
-    block = shape.blocks[node, above]
-    worth = {b: shape.regions[node].limit[b][planar.DIFFERENT][1] for b in set(block.tolist())}
+    entries = shape.entries[node, above]
+    worth = {b: shape.regions[node].limit[b][planar.DIFFERENT][1] for b in entries}
     for child in plan.hanging[node]:
         for b in plan.door_blocks[child]:
             if b in worth:
                 worth[b] += plan.value(child)
     best = max(worth.values(), default=0.0)
-    fit = np.array([worth[b] == best for b in block.tolist()], bool)
+    doors = [entries[b] for b in entries if worth[b] == best]
     plan.worth[node] = worth
-    plan.doors[node] = shape.shared[node, above][fit]
-    plan.door_blocks[node] = sorted(set(shape.blocks[above, node][fit].tolist()))
+    plan.doors[node] = np.concatenate([NO_LINKS, *(links for links, _ in doors)])
+    plan.door_blocks[node] = sorted({b for _, behind in doors for b in behind})

@@ -14,6 +14,10 @@ SURFACE_WEIGHT = 2.0
 """Worth of a surface voxel, an interior one being 1: the surface carries the appearance."""
 
 
+Entry = tuple[grid.IntArray, list[int]]
+"""Links shared with another node, and the blocks of that node that they lie in."""
+
+
 @dataclass(frozen=True, eq=False)
 class Layers:
     """A solid as planar regions, one for each node, on one flat numbering of cells.
@@ -28,8 +32,9 @@ class Layers:
     shared : dict
         For each edge (a, b) of the graph, both ways round: the links that lie in both nodes,
         (m, 2) int32 rows (cell, axis). Without one, the nodes can be linked on the MSP only.
-    blocks : dict
-        The block of node a that each of those links lies in.
+    entries : dict
+        For each edge (a, b), both ways round: for each block of a in which such links lie, in
+        ascending order, these links and the blocks of b that they lie in.
     """
 
     solid: VoxelSolid
@@ -37,7 +42,7 @@ class Layers:
     width: int
     regions: list[planar.Region]
     shared: dict[tuple[int, int], grid.IntArray]
-    blocks: dict[tuple[int, int], grid.IntArray]
+    entries: dict[tuple[int, int], dict[int, Entry]]
 
     def size(self, node: int) -> int:
         """Number of voxels of a node."""
@@ -67,14 +72,22 @@ def layers(solid: VoxelSolid) -> Layers:
         planar.region(planes[z] == node, weights[z], width)
         for node, z in enumerate(graph.layer_of.tolist())
     ]
-    shared, blocks = {}, {}
+    shared, entries = {}, {}
     for a, b in graph.edges.tolist():
         links = _links(regions[a].inside & regions[b].inside, width)
         cell, axis = links.T
+        other = cell + np.where(axis, width, 1)
+        block = [regions[node].block_of(cell, other) for node in (a, b)]
         shared[a, b] = shared[b, a] = links
-        for node, other in ((a, b), (b, a)):
-            blocks[node, other] = regions[node].block_of(cell, cell + np.where(axis, width, 1))
-    return Layers(solid, graph, width, regions, shared, blocks)
+        entries[a, b] = _entries(links, block[0], block[1])
+        entries[b, a] = _entries(links, block[1], block[0])
+    return Layers(solid, graph, width, regions, shared, entries)
+
+
+def _entries(links: grid.IntArray, block: grid.IntArray, behind: grid.IntArray) -> dict[int, Entry]:
+    """Links by the block they lie in, and with them the blocks they lie in behind it."""
+    fit = {b: block == b for b in np.unique(block).tolist()}
+    return {b: (links[fit[b]], np.unique(behind[fit[b]]).tolist()) for b in fit}
 
 
 def _links(inside: grid.BoolArray, width: int) -> grid.IntArray:

@@ -136,7 +136,7 @@ def direction_of(width: int, difference: int) -> int:
 
 @kernel
 def earned(board: Board, cell: int, axis: int) -> float:
-    """Count in the bonuses that the link from a cell along axis 0 or 1 has changed; their change."""
+    """Take note of a changed link, from a cell along axis 0 or 1; the change in bonuses."""
     is_set = (board.links[cell] >> axis) & 1
     change = 0.0
     for slot in range(2):

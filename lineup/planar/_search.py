@@ -42,7 +42,11 @@ BESIDE_HOLES = 0.8
 """Share of the proposals made within two cells of a hole."""
 
 STRAND = 16.0
-"""Half of the strands are followed for twice as many steps at most, a quarter for four times..."""
+"""Steps for which strands are followed at least; with chance 1/k, for k times as many.
+
+In a large region most strands are long and what joins them matters little, but now and then it
+has to be known.
+"""
 
 
 @kernel
@@ -66,7 +70,7 @@ def propose(
     gain = weight_change(board, square, pattern)
     if gain == -np.inf:
         return 0.0, 0
-    # How far to look does not depend on the state, so the moves stay as likely back as forth.
+    # How far to look is drawn blindly, so that a move and its inverse stay as likely.
     reach = int(STRAND / (rng.random() + 1e-6)) if pattern in (5, 10) else 0
     cycles = cycle_change(board, square, pattern, reach)
     if cycles == UNKNOWN:
