@@ -124,7 +124,7 @@ def _annealed(
     seed: int,
     *,
     sweeps: int,
-    starts: int = 4,
+    starts: int | None = None,
     surface_weight: float = 1.5,
 ) -> VoxelPath:
     """A layered path annealed as a whole by `method`."""

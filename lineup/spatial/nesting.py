@@ -16,7 +16,7 @@ from ._nested import SINGLE, Nest, anneal_nested, label_piece
 from ._solids import board_of, cells_of, path_through
 from ._strands import FREE, LABEL, Board, drop_cycles, lay, path_cells
 
-COOLING = Stage(Terms(0.35, 0.0, 0.5, 0.0), Terms(0.08, 0.0, 5.0, 0.0))
+COOLING = Stage(Terms(0.2, 0.0, 0.3, 0.0), Terms(0.15, 0.0, 3.0, 0.0))
 
 FILLING = Stage(Terms(0.15, 0.0, 50.0, 0.0), Terms(0.05, 0.0, 50.0, 0.0))
 
@@ -27,7 +27,7 @@ def nested(
     """A layered path with excursions added, moved and taken away so that it covers more.
 
     Each still leaves a piece for the layer above or below at one voxel and comes back beside it,
-    but a node may hold many pieces, down to two voxels.
+    but a node may hold many pieces, down to two voxels. Where that gains nothing the path stays.
     """
     rng = np.random.default_rng(seed)
     board = board_of(solid, surface_weight)
@@ -39,7 +39,8 @@ def nested(
     drop_cycles(board)
     anneal_nested(board, nest, loops, FILLING, n // 5, rng)
     drop_cycles(board)
-    return path_in_pieces(path_cells(board), nest, solid)
+    annealed = path_in_pieces(path_cells(board), nest, solid)
+    return annealed if len(annealed) > len(path) else replace(path, method="nested")
 
 
 def path_in_pieces(cells: NDArray[np.int64], nest: Nest, solid: VoxelSolid) -> VoxelPath:

@@ -32,4 +32,6 @@ def free3d(
     anneal(board, loops, COOLING, n - n // 5, rng)
     drop_cycles(board)
     anneal(board, loops, FILLING, n // 5, rng)
-    return path_through(even(path_cells(board), board), solid, "free3d")
+    annealed = even(path_cells(board), board)
+    kept = annealed if len(annealed) > len(path) else cells_of(path.voxels, solid)
+    return path_through(kept, solid, "free3d")
