@@ -32,6 +32,9 @@ LEAF_ABOVE, LEAF_BELOW = (0b1000, 0b0111), (0b0010, 0b1101)
 LEVELS, COLUMNS = 0b1010, 0b0101
 """The sides of a vertical square that lie in a layer, and those that do not."""
 
+ROUND_FIRST, ROUND_SECOND = (0b0011, 0b1001), (0b0110, 0b1100)
+"""One vertical side of such a square, at its first or second column, and a level one beside it."""
+
 
 class Nest(NamedTuple):
     """What a board does not say of its pieces, on N flat cells.
@@ -112,15 +115,15 @@ def keeps_nesting(
     if direction[0] != UP:
         same_piece = nest.piece[corner[0]] == nest.piece[corner[2]]
         return not opposite or not same_strand or same_piece
-    if pattern == LEAF_ABOVE[0] or pattern == LEAF_BELOW[0]:
+    if pattern in (LEAF_ABOVE[0], LEAF_BELOW[0]):
         return True
-    if pattern == LEAF_ABOVE[1] or pattern == LEAF_BELOW[1] or pattern == COLUMNS:
+    if pattern in (LEAF_ABOVE[1], LEAF_BELOW[1], COLUMNS):
         return is_bridge(nest, corner, direction)
     if pattern == LEVELS:
         return not same_strand
-    if pattern == 0b0011 or pattern == 0b1001:
+    if pattern in ROUND_FIRST:
         return nest.mate[corner[0]] == SINGLE
-    if pattern == 0b0110 or pattern == 0b1100:
+    if pattern in ROUND_SECOND:
         return nest.mate[corner[3]] == SINGLE
     return False
 

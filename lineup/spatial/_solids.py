@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from .. import grid
 from ..solid import VoxelPath, VoxelSolid
-from ._strands import FREE, NO_DIRECTION, Board
+from ._loops import Loops, loops_of
+from ._strands import FREE, NO_DIRECTION, Board, lay
 
 MARGIN = 1
 
@@ -30,6 +31,13 @@ def board_of(solid: VoxelSolid, surface_weight: float) -> Board:
         ends=np.zeros(2, np.int64),
         tally=np.zeros(3, np.int64),
     )
+
+
+def board_with(path: VoxelPath, solid: VoxelSolid, surface_weight: float) -> tuple[Board, Loops]:
+    """The board of a solid with a path on it, and the polygons that fit the solid."""
+    board = board_of(solid, surface_weight)
+    lay(board, cells_of(path.voxels, solid))
+    return board, loops_of(board.weight > 0, board.stride)
 
 
 def _exits(occupancy: grid.BoolArray) -> NDArray[np.uint8]:

@@ -11,10 +11,9 @@ from .. import grid
 from ..solid import VoxelPath, VoxelSolid
 from ..visits import visits_of
 from ._anneal import Stage, Terms
-from ._loops import loops_of
 from ._nested import SINGLE, Nest, anneal_nested, label_piece
-from ._solids import board_of, cells_of, path_through
-from ._strands import FREE, LABEL, Board, drop_cycles, lay, path_cells
+from ._solids import board_with, cells_of, path_through
+from ._strands import FREE, LABEL, Board, drop_cycles, path_cells
 
 COOLING = Stage(Terms(0.2, 0.0, 0.3, 0.0), Terms(0.15, 0.0, 3.0, 0.0))
 
@@ -30,9 +29,7 @@ def nested(
     but a node may hold many pieces, down to two voxels. Where that gains nothing the path stays.
     """
     rng = np.random.default_rng(seed)
-    board = board_of(solid, surface_weight)
-    loops = loops_of(board.weight > 0, board.stride)
-    lay(board, cells_of(path.voxels, solid))
+    board, loops = board_with(path, solid, surface_weight)
     nest = _nest_of(path, solid, board)
     n = sweeps * solid.size
     anneal_nested(board, nest, loops, COOLING, n - n // 5, rng)

@@ -6,9 +6,8 @@ import numpy as np
 
 from ..solid import VoxelPath, VoxelSolid
 from ._anneal import Stage, Terms, anneal
-from ._loops import loops_of
-from ._solids import board_of, cells_of, even, path_through
-from ._strands import drop_cycles, lay, path_cells
+from ._solids import board_with, cells_of, even, path_through
+from ._strands import drop_cycles, path_cells
 
 COOLING = Stage(Terms(0.6, 0.0, 0.3, 0.0), Terms(0.1, 0.0, 5.0, 0.0))
 
@@ -25,9 +24,7 @@ def free3d(
     is mostly what it was at the start.
     """
     rng = np.random.default_rng(seed)
-    board = board_of(solid, surface_weight)
-    loops = loops_of(board.weight > 0, board.stride)
-    lay(board, cells_of(path.voxels, solid))
+    board, loops = board_with(path, solid, surface_weight)
     n = sweeps * solid.size
     anneal(board, loops, COOLING, n - n // 5, rng)
     drop_cycles(board)

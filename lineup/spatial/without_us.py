@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from ..solid import VoxelPath, VoxelSolid
 from ._anneal import Stage, Terms, anneal
-from ._loops import loops_of
-from ._solids import board_of, cells_of, path_through
+from ._solids import board_of, board_with, path_through
 from ._strands import Board, lay, path_cells
 
 HIDDEN = 5.0
@@ -34,9 +33,7 @@ def ufree(
     free again without making any.
     """
     rng = np.random.default_rng(seed)
-    board = board_of(solid, surface_weight)
-    loops = loops_of(board.weight > 0, board.stride)
-    lay(board, cells_of(path.voxels, solid))
+    board, loops = board_with(path, solid, surface_weight)
     n = sweeps * solid.size
     anneal(board, loops, COOLING, n - n // 5, rng)
     cells = cut_short(path_cells(board), board)
