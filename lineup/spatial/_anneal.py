@@ -38,7 +38,13 @@ from ._strands import (
     order_strand,
 )
 
-REACH = 2000
+LOOSE = SPACING // 16
+"""Difference of keys below which a stretch is too dense, and its path is walked as a whole.
+
+Then a difference of keys tells about how many cells lie between.
+"""
+
+REACH = 1000
 """Cells of the path that a move without gain may turn round; beyond, it is refused."""
 
 END_SHARE = 0.1
@@ -150,7 +156,7 @@ def order_stretch(
         direction = onward(board, cell, (direction + 3) % 6)
         n += 1
     gap = (board.key[last] - board.key[first]) // n
-    if gap == 0:
+    if gap < LOOSE:
         order_strand(board, board.ends[0], PATH)
         return
     key = board.key[first]
@@ -189,6 +195,12 @@ def settle_strands(
 
 
 @kernel
+def is_far(board: Board, a: int, b: int) -> bool:
+    """Whether two cells of the path are too far apart to turn round what lies between."""
+    return abs(board.key[b] - board.key[a]) > REACH * SPACING
+
+
+@kernel
 def swap(
     board: Board,
     scratch: Scratch,
@@ -215,10 +227,9 @@ def swap(
     gain -= terms.cycle_price * cycles
     if gain + terms.u_price * board.tally[N_US] < threshold:  # however many Us it may undo
         return False
-    if first != OUTSIDE and gain <= 0:
-        a, b = corner[scratch.end_corner[first]], corner[scratch.end_corner[last]]
-        if board.key[b] - board.key[a] > REACH * SPACING:
-            return False
+    a, b = scratch.end_corner[first], scratch.end_corner[last]
+    if first != OUTSIDE and gain <= 0 and is_far(board, corner[a], corner[b]):
+        return False
     us = flip_sides(board, corner, direction, pattern, n)
     if gain - terms.u_price * us < threshold:
         flip_sides(board, corner, direction, ~pattern, n)
@@ -322,6 +333,8 @@ def try_advance(
         gain = 0.0 if strand == PATH else terms.cycle_price
     gain += exposure_gain(board, side, new_end, terms.hidden)
     if gain + terms.u_price * board.tally[N_US] < threshold:
+        return
+    if strand == PATH and gain <= 0 and is_far(board, cell, end):
         return
     if cut != NO_DIRECTION:
         us += flip_link(board, cell, cut)
