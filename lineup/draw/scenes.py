@@ -103,12 +103,10 @@ def layering(path: VoxelPath, solid: VoxelSolid) -> Figure:
     figure = page(14, 5)
     view = view_of(solid_body(solid).points).widened(0.85)
     left = picture(figure, (0, 0, 0.33, 0.94), [solid_body(solid)], view)
-    middle = figure.add_axes((0.38, 0.18, 0.26, 0.72))
+    middle = figure.add_axes((0.38, 0.15, 0.26, 0.75))
     reeb_axes(middle, reeb_graph(solid), _traversal(path))
     key = reeb_key(_traversal(path))
-    middle.legend(
-        handles=key, loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=3, frameon=False
-    )
+    figure.legend(handles=key, loc="lower center", ncols=3, frameon=False, fontsize=9)
     right = picture(figure, (0.67, 0, 0.33, 0.94), [chain_body(positions(path))], view)
     for axes, title in zip(
         (left, middle, right),
