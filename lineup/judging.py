@@ -293,8 +293,8 @@ def certify_path(path: VoxelPath, solid: VoxelSolid, u_free: bool = False) -> Ce
     ----------
     u_free : bool
         Ask as well that no three consecutive links are sides of one unit square, and that one
-        end can leave the solid along a lattice ray without such a U: then pulling it unfolds
-        the path.
+        end can leave the solid along a lattice ray without such a U: what pulling the chain out
+        by that end takes.
 
     Returns
     -------

@@ -179,6 +179,47 @@ def test_alternating_pieces_are_refused():
     assert verdict.where == 3
 
 
+CUP = np.ones((5, 5, 4), bool)
+CUP[2, 2, 2:] = False
+
+U_FAULTS = {
+    "a U": (walk("ENWN"), np.ones((2, 3, 1), bool), 0, "steps 0 to 3 form a U"),
+    "a U at the end": (walk("EENW")[1:], np.ones((3, 2, 1), bool), 0, "steps 0 to 3 form a U"),
+    "both ends inside": (
+        walk("E", (1, 1, 1)),
+        np.ones((4, 3, 3), bool),
+        -1,
+        "no end can leave the solid",
+    ),
+    "a U on the way out": (walk("SUE", (2, 2, 1)), CUP, -1, "no end can leave the solid"),
+    "a U on the way out of the other end": (
+        walk("SUE", (2, 2, 1))[::-1],
+        CUP,
+        -1,
+        "no end can leave the solid",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", U_FAULTS)
+def test_us_are_found_where_asked_for(name):
+    voxels, occupancy, where, words = U_FAULTS[name]
+    voxels = voxels[: len(voxels) // 2 * 2]
+    path = lu.VoxelPath(voxels, dropped=rest(occupancy, voxels))
+    solid = lu.VoxelSolid(occupancy)
+    assert lu.certify_path(path, solid).ok
+    verdict = lu.certify_path(path, solid, u_free=True)
+    assert not verdict.ok
+    assert words in verdict.reason
+    assert verdict.where == where
+
+
+@pytest.mark.parametrize("voxels", [walk("SEU", (2, 2, 1)), walk("SEU", (2, 2, 1))[::-1]])
+def test_one_way_out_without_a_u_is_enough(voxels):
+    path = lu.VoxelPath(voxels, dropped=rest(CUP, voxels))
+    assert lu.certify_path(path, lu.VoxelSolid(CUP), u_free=True).reason == "certified"
+
+
 def goes_on_beside(voxels, visits):
     """Whether every run begins beside the end of the last run of the same number."""
     left = {}

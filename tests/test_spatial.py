@@ -224,19 +224,16 @@ def test_cutting_us_short_leaves_none():
     assert kept.voxels.tolist() == [[x, 0, 0] for x in range(10)]
 
 
-def test_an_end_in_a_pit_is_no_exit():
-    """From the bottom of a pit one ray leads out; the path that comes down it cannot take it."""
-    cup = np.ones((3, 3, 3), bool)
-    cup[1, 1, 1:] = False
+def test_the_way_out_closes_no_u():
+    """From the bottom of a pit the one way out is up: not for a path that has just come down."""
+    cup = np.ones((5, 5, 4), bool)
+    cup[2, 2, 2:] = False
     solid = lu.VoxelSolid(cup)
     board = _solids.board_of(solid, 1.0)
-    bottom_first = np.array([(1, 1, 0), (1, 0, 0), (1, 0, 1), (1, 0, 2), (0, 0, 2), (0, 0, 1)])
-    assert without_us.has_exit(_solids.cells_of(bottom_first, solid), board)
-    up_and_over = np.array([(1, 1, 0), (1, 0, 0), (0, 0, 0)])
-    assert without_us.has_exit(_solids.cells_of(up_and_over, solid), board)
-    from_above = np.array([(0, 1, 0), (0, 0, 0), (0, 0, 1), (0, 0, 2)])
-    down = without_us.has_exit(_solids.cells_of(from_above, solid), board)
-    assert down
+    down_and_in = np.array([(2, 2, 1), (2, 1, 1), (2, 1, 2), (3, 1, 2)])
+    along_and_in = np.array([(2, 2, 1), (2, 1, 1), (3, 1, 1), (3, 1, 2)])
+    for voxels, out in ((down_and_in, False), (along_and_in, True)):
+        assert without_us.has_exit(_solids.cells_of(voxels, solid), board) == out
 
 
 def nest_of(occupancy, seed):

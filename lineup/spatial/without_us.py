@@ -1,8 +1,8 @@
-"""Long paths without Us, which pulling one end unfolds.
+"""Long paths without Us, fit to be pulled out of the solid by one end.
 
 A *U* is three consecutive links that are sides of one unit square. Where no unit square has more
-than two path edges there is none; and a path without Us can be pulled out along any free ray from
-one of its ends.
+than two path edges there is none. A chain without Us can follow its own path round every corner
+without a bend of more than 90 degrees, out along a free ray from one of its ends.
 """
 
 from __future__ import annotations
