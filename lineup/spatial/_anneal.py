@@ -45,7 +45,7 @@ Then a difference of keys tells about how many cells lie between.
 """
 
 REACH = 1000
-"""Cells of the path that a move without gain may turn round; beyond, it is refused."""
+"""Cells of the path that a move without gain may always turn round; see `is_spared`."""
 
 END_SHARE = 0.1
 """Share of end moves among the moves proposed."""
@@ -195,9 +195,12 @@ def settle_strands(
 
 
 @kernel
-def is_far(board: Board, a: int, b: int) -> bool:
-    """Whether two cells of the path are too far apart to turn round what lies between."""
-    return abs(board.key[b] - board.key[a]) > REACH * SPACING
+def is_spared(board: Board, a: int, b: int, rng: np.random.Generator) -> bool:
+    """Whether to leave alone what lies between two cells of the path: the likelier the longer.
+
+    The chance of a move is `REACH` over its length, so that its mean cost has a bound.
+    """
+    return abs(board.key[b] - board.key[a]) * rng.random() > REACH * SPACING
 
 
 @kernel
@@ -210,6 +213,7 @@ def swap(
     gain: float,
     threshold: float,
     terms: Terms,
+    rng: np.random.Generator,
 ) -> bool:
     """Swap links and gaps of a polygon if that gains enough; whether it did.
 
@@ -228,7 +232,7 @@ def swap(
     if gain + terms.u_price * board.tally[N_US] < threshold:  # however many Us it may undo
         return False
     a, b = scratch.end_corner[first], scratch.end_corner[last]
-    if first != OUTSIDE and gain <= 0 and is_far(board, corner[a], corner[b]):
+    if first != OUTSIDE and gain <= 0 and is_spared(board, corner[a], corner[b], rng):
         return False
     us = flip_sides(board, corner, direction, pattern, n)
     if gain - terms.u_price * us < threshold:
@@ -245,7 +249,13 @@ def swap(
 
 @kernel
 def try_loop(
-    board: Board, loops: Loops, loop: int, scratch: Scratch, threshold: float, terms: Terms
+    board: Board,
+    loops: Loops,
+    loop: int,
+    scratch: Scratch,
+    threshold: float,
+    terms: Terms,
+    rng: np.random.Generator,
 ) -> None:
     """Toggle a polygon if that is allowed and gains enough."""
     shape = loops.shape[loop]
@@ -253,7 +263,7 @@ def try_loop(
     pattern = pattern_of(board, loops, loop, scratch.corner)
     gain = weight_gain(board, scratch.corner, pattern, n)
     if gain > -np.inf:
-        swap(board, scratch, loops.direction[shape], pattern, n, gain, threshold, terms)
+        swap(board, scratch, loops.direction[shape], pattern, n, gain, threshold, terms, rng)
 
 
 @kernel
@@ -334,7 +344,7 @@ def try_advance(
     gain += exposure_gain(board, side, new_end, terms.hidden)
     if gain + terms.u_price * board.tally[N_US] < threshold:
         return
-    if strand == PATH and gain <= 0 and is_far(board, cell, end):
+    if strand == PATH and gain <= 0 and is_spared(board, cell, end, rng):
         return
     if cut != NO_DIRECTION:
         us += flip_link(board, cell, cut)
@@ -387,4 +397,4 @@ def anneal(
             kind += 1
         first, last = loops.first[kind], loops.first[kind + 1]
         if first < last:
-            try_loop(board, loops, rng.integers(first, last), scratch, threshold, terms)
+            try_loop(board, loops, rng.integers(first, last), scratch, threshold, terms, rng)

@@ -158,6 +158,7 @@ def try_square(
     scratch: Scratch,
     threshold: float,
     terms: Terms,
+    rng: np.random.Generator,
 ) -> None:
     """Toggle a unit square if that keeps the nesting and gains enough."""
     corner, direction = scratch.corner, loops.direction[loops.shape[loop]]
@@ -166,7 +167,7 @@ def try_square(
     if (
         gain > -np.inf
         and keeps_nesting(board, nest, corner, direction, pattern)
-        and swap(board, scratch, direction, pattern, 4, gain, threshold, terms)
+        and swap(board, scratch, direction, pattern, 4, gain, threshold, terms, rng)
     ):
         settle_pieces(board, nest, corner, direction, pattern)
 
@@ -187,4 +188,4 @@ def anneal_nested(
         if k % BLOCK == 0:
             terms = terms_at(stage, k / n_proposals)
         threshold = terms.heat * np.log(rng.random())
-        try_square(board, nest, loops, rng.integers(0, n_squares), scratch, threshold, terms)
+        try_square(board, nest, loops, rng.integers(0, n_squares), scratch, threshold, terms, rng)
