@@ -25,7 +25,6 @@ ORDER = [
         "solid",
         "kinematics",
         "notation",
-        "_sweeps",
         "judging",
     ),
     *("meshes", "implicit", "shapes", "sampling", "voxelization", "catalog"),

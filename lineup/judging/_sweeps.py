@@ -14,8 +14,8 @@ from math import sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from ._jit import kernel
-from .kinematics import Move
+from .._jit import kernel
+from ..kinematics import Move
 
 Ints = NDArray[np.int64]
 Near = tuple[float, int, int]  # a distance, capped at 1, and the first bars of two runs that near
