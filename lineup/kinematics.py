@@ -11,30 +11,48 @@ import numpy as np
 from .grid import DIRECTIONS, FloatArray, IntArray
 from .solid import Motion
 
+TICK = 2 * np.pi / 2**20
+"""Radians in one unit of `Motion.angles`; a quarter turn is `QUARTER` units."""
+
+QUARTER = 2**18
+
 
 class Move(IntEnum):
-    """What a row (kind, joint, other, value) of `Motion.moves` does; each turns by 90 degrees.
+    """What a row (kind, joint, other, value) of `Motion.moves` does.
 
     PEEL
-        ``other`` is joint ± 1. The bar (joint, other) turns about `joint` to direction `value`;
-        everything beyond `other` keeps its directions and is carried along.
+        ``other`` is joint ± 1. The bar (joint, other) turns by 90 degrees about `joint` to
+        direction `value`; everything beyond `other` keeps its directions and is carried along.
     SWING
-        ``other`` is joint ± 1. The bar (joint, other) and everything beyond it turn rigidly
-        about `joint` until that bar has direction `value`.
+        ``other`` is joint ± 1. The bar (joint, other) and everything beyond it turn rigidly by 90
+        degrees about `joint` until that bar has direction `value`.
     DOOR
         The joints strictly between joint < other turn rigidly about the line through those two,
         by +90 degrees (value 1) or -90 degrees (value -1), right-handed from `joint` to `other`.
     TILT
         Every bar turns at once, by the same angle, to its direction in ``poses[value]`` (bars
         that have it already stay); joint 0 rests. `joint` and `other` are 0 and P - 1.
+    PULL
+        The whole chain glides along itself by one voxel: end `joint` goes one step in direction
+        `value`, and every other joint takes the place of the one before it. `joint` and `other`
+        are the two ends, 0 and P - 1 or P - 1 and 0. On the way every joint stays on the track,
+        the lattice path through the old and the new pose.
+    BEND
+        Bars along axis `joint` (0, 1 or 2) keep their directions; every other bar lies across
+        that axis and turns about it, evenly in time, from its angle in ``angles[other]`` to that
+        in ``angles[value]``, right-handed from axis `joint` + 1 to axis `joint` + 2; joint 0
+        rests. The entries of bars along the axis are 0.
 
-    A reversed move is a move of the same kind, so a motion can be played backwards.
+    A reversed move is a move of the same kind, so a motion can be played backwards. All but BEND
+    lead from a lattice pose to a lattice pose; a BEND may begin and end between.
     """
 
     PEEL = 0
     SWING = 1
     DOOR = 2
     TILT = 3
+    PULL = 4
+    BEND = 5
 
 
 def frames(motion: Motion, every: int = 1, substeps: int = 1) -> Iterator[FloatArray]:
@@ -45,7 +63,8 @@ def frames(motion: Motion, every: int = 1, substeps: int = 1) -> Iterator[FloatA
     every : int
         Show every so many moves; the first and the last pose always come.
     substeps : int
-        Poses inside each move shown, at equal steps of its angle, the last at its end.
+        Poses inside each move shown, the last at its end: at equal steps of its angle, and of
+        the wave that runs from the leading end to the other in a PULL.
 
     Raises
     ------
@@ -72,26 +91,31 @@ def _frames(motion: Motion, every: int, substeps: int) -> Iterator[FloatArray]:
         if k % every == 0 or k == len(motion):
             for s in range(1, substeps):
                 yield moved(pose, move, motion, s / substeps)
-        pose = np.rint(moved(pose, move, motion, 1.0))
+        pose = moved(pose, move, motion, 1.0)
+        if move[0] != Move.BEND or on_lattice(motion.angles[move[3]]):
+            pose = np.rint(pose)
         if k % every == 0 or k == len(motion):
             yield pose.copy()
 
 
 def moved(pose: FloatArray, move: IntArray, motion: Motion, t: float) -> FloatArray:
-    """The pose after the share t (0 to 1) of one move's angle.
+    """The pose after the share t (0 to 1) of one move.
 
     Raises
     ------
     ValueError
-        If the move is of no known kind, or would not turn its bar by 90 degrees.
+        If the move is of no known kind, or cannot be made from this pose.
     """
     kind, joint, other, value = (int(x) for x in move)
     angle = t * np.pi / 2
     if kind == Move.TILT:
         bars = np.diff(pose, axis=0)
-        bars = _turned(bars, DIRECTIONS[motion.poses[value]], angle)
-        tilted: FloatArray = pose[0] + np.vstack([np.zeros(3), bars.cumsum(axis=0)])
-        return tilted
+        return _chained(pose[0], _turned(bars, DIRECTIONS[motion.poses[value]], angle))
+    if kind == Move.PULL:
+        return _pulled(pose, joint, DIRECTIONS[value], t)
+    if kind == Move.BEND:
+        before, after = motion.angles[other], motion.angles[value]
+        return _chained(pose[0], _bent(np.diff(pose, axis=0), joint, before, after, t))
     out = pose.copy()
     if kind == Move.DOOR:
         axis = pose[other] - pose[joint]
@@ -109,6 +133,60 @@ def moved(pose: FloatArray, move: IntArray, motion: Motion, t: float) -> FloatAr
     else:
         raise ValueError(f"unknown kind of move {kind}; known: {[m.name for m in Move]}")
     return out
+
+
+def on_lattice(angles: IntArray) -> bool:
+    """Whether bars at these angles all lie along lattice axes."""
+    return not (angles % QUARTER).any()
+
+
+def _chained(first: FloatArray, bars: FloatArray) -> FloatArray:
+    joints: FloatArray = first + np.vstack([np.zeros(3), bars.cumsum(axis=0)])
+    return joints
+
+
+def _bent(bars: FloatArray, axis: int, before: IntArray, after: IntArray, t: float) -> FloatArray:
+    """Bars (n, 3) after the share t of a BEND about `axis`."""
+    u, v = (axis + 1) % 3, (axis + 2) % 3
+    across = np.abs(bars[:, axis]) < 0.5
+    angle = TICK * ((1 - t) * before[across] + t * after[across])
+    bent = np.rint(bars)
+    bent[across, axis] = 0
+    bent[across, u], bent[across, v] = np.cos(angle), np.sin(angle)
+    return bent
+
+
+def _pulled(pose: FloatArray, head: int, step: IntArray, t: float) -> FloatArray:
+    """The pose after the share t of a PULL by end `head`.
+
+    Each joint is at a phase, 0 to 1, between its old place and its new one. Joints on one straight
+    piece of the track have one phase; past a corner it is g(p) = sqrt(1 - (1 - p)^2) for p before
+    it, so that bars keep their length. The phase of one piece after the other, from the head on,
+    runs from 1/2 to g(1/2), where the next piece takes over.
+    """
+    if head not in (0, len(pose) - 1):
+        raise ValueError(f"a pull is by joint 0 or {len(pose) - 1}, got {head}")
+    joints = pose if head else pose[::-1]  # the head last
+    ahead = np.vstack([joints[1:], joints[-1] + step])
+    bars = ahead - joints
+    cosine = (bars[1:] * bars[:-1]).sum(axis=1)
+    if cosine.min(initial=0) < -0.5:
+        raise ValueError(f"a pull by joint {head} would go straight back")
+    corner = cosine < 0.5
+    piece = np.concatenate([[0], corner.cumsum()])
+    n_pieces = int(piece[-1]) + 1
+    rise = np.sqrt(0.75) - 0.5
+    travelled = t * (1 + rise * (n_pieces - 1))
+    k = int(np.clip((travelled - 0.5) // rise, 0, n_pieces - 1))  # pieces that have gone ahead
+    phase = np.empty(n_pieces)
+    leader = n_pieces - 1 - k
+    phase[leader] = np.clip(travelled - rise * k, 0.0, 1.0)
+    for i in range(leader + 1, n_pieces):
+        phase[i] = np.sqrt(phase[i - 1] * (2 - phase[i - 1]))
+    for i in range(leader - 1, -1, -1):
+        phase[i] = phase[i + 1] ** 2 / (1 + np.sqrt(1 - phase[i + 1] ** 2))
+    moved_on: FloatArray = joints + phase[piece][:, None] * bars
+    return moved_on if head else moved_on[::-1]
 
 
 def _turned(bars: FloatArray, targets: IntArray | FloatArray, angle: float) -> FloatArray:

@@ -1,6 +1,8 @@
 """Lattice paths and moves as short text: `ENUWSD` and `p120+N` (docs/formats.md)."""
 
+import base64
 import re
+import zlib
 from collections.abc import Sequence
 
 import numpy as np
@@ -12,6 +14,8 @@ _TOKEN = re.compile(
     r"(?P<kind>[ps])(?P<joint>\d{1,9})(?P<side>[+-])(?P<letter>[ENUWSD])"
     r"|d(?P<first>\d{1,9}):(?P<last>\d{1,9})(?P<turn>[+-])"
     r"|t(?P<pose>\d{1,9})"
+    r"|g(?P<head>[+-])(?P<step>[ENUWSD])"
+    r"|b(?P<axis>[xyz])(?P<before>\d{1,9}):(?P<after>\d{1,9})"
 )
 
 
@@ -38,6 +42,29 @@ def positions(origin: Sequence[int], letters: str) -> grid.IntArray:
     return path.cumsum(axis=0, dtype=np.int32)
 
 
+def packed(angles: grid.IntArray) -> str:
+    """Rows of angles as base64 of the compressed differences from row to row, "" for none."""
+    if not angles.size:
+        return ""
+    steps = np.diff(angles.astype(np.int32), axis=0, prepend=np.int32(0)).astype("<i4")
+    return base64.b64encode(zlib.compress(steps.tobytes(), 9)).decode()
+
+
+def unpacked(text: str, n_rows: int, n_bars: int) -> grid.IntArray:
+    """The (n_rows, n_bars) angles that `packed` wrote; a ValueError where it did not."""
+    n_bytes = 4 * n_rows * n_bars
+    decoder = zlib.decompressobj()
+    try:
+        data = decoder.decompress(base64.b64decode(text, validate=True), max(n_bytes, 1))
+    except zlib.error as error:
+        raise ValueError(f"angles do not decompress: {error}") from None
+    whole = (decoder.eof and not decoder.unused_data) or not text
+    if len(data) != n_bytes or not whole:
+        raise ValueError(f"angles are not those of {n_rows} rows of {n_bars} bars")
+    steps = np.frombuffer(data, "<i4").reshape(n_rows, n_bars if n_rows else 0)
+    return steps.cumsum(axis=0, dtype=np.int32)
+
+
 def token(k: int, row: Sequence[int], last: int) -> str:
     """Row k of `Motion.moves` as text; `last` is the number of the last joint."""
     kind, joint, other, value = row
@@ -49,14 +76,26 @@ def token(k: int, row: Sequence[int], last: int) -> str:
             return f"d{joint}:{other}{'+' if value > 0 else '-'}"
         if kind == Move.TILT and (joint, other) == (0, last) and value >= 0:
             return f"t{value}"
+        if kind == Move.PULL and {joint, other} == {0, last} and 0 <= value < 6:
+            return f"g{'+' if joint == last else '-'}{grid.LETTERS[value]}"
+    if kind == Move.BEND and joint in (0, 1, 2) and min(other, value) >= 0:
+        return f"b{'xyz'[joint]}{other}:{value}"
     raise ValueError(f"move {k}, {tuple(row)}, is not one the format knows")
 
 
-def move(k: int, text: str, last: int, n_poses: int) -> tuple[int, int, int, int]:
+def move(k: int, text: str, last: int, n_poses: int, n_angles: int) -> tuple[int, int, int, int]:
     """Row k of `Motion.moves` from its text; a ValueError where it names no move of this chain."""
     match = _TOKEN.fullmatch(text)
     if match is None:
         raise ValueError(f"move {k} reads {text[:20]!r}, which is not a move")
+    if match["axis"]:
+        before, after = int(match["before"]), int(match["after"])
+        if max(before, after) >= n_angles:
+            raise ValueError(f"move {k} reads {text!r}, but there are {n_angles} rows of angles")
+        return int(Move.BEND), "xyz".index(match["axis"]), before, after
+    if match["head"]:
+        head, tail = (last, 0) if match["head"] == "+" else (0, last)
+        return int(Move.PULL), head, tail, grid.LETTERS.index(match["step"])
     if match["kind"]:
         kind = Move.PEEL if match["kind"] == "p" else Move.SWING
         joint = int(match["joint"])

@@ -140,6 +140,11 @@ class Motion:
         Why the planner stopped: "straight", or what is in the way.
     poses : (K, P - 1) int8
         Bar directions that the TILT moves lead to.
+    angles : (K, P - 1) int32
+        Bar angles that the BEND moves pass through, in units of `kinematics.TICK`.
+    goal : (P, 3) int32
+        The pose that the motion claims to end in, as it is or turned as a whole; empty where it
+        claims none. A motion without a goal is one to or from a straight line.
     """
 
     start: grid.IntArray
@@ -151,11 +156,14 @@ class Motion:
     poses: np.ndarray[Any, np.dtype[np.int8]] = field(
         default_factory=lambda: np.empty((0, 0), np.int8)
     )
+    angles: grid.IntArray = field(default_factory=lambda: np.empty((0, 0), np.int32))
+    goal: grid.IntArray = field(default_factory=lambda: np.empty((0, 3), np.int32))
 
     def __post_init__(self) -> None:
-        for name, width in (("start", 3), ("moves", 4)):
+        for name, width in (("start", 3), ("moves", 4), ("goal", 3)):
             object.__setattr__(self, name, _int_rows(getattr(self, name), name, width))
         object.__setattr__(self, "poses", np.asarray(self.poses, np.int8))
+        object.__setattr__(self, "angles", np.asarray(self.angles, np.int32))
 
     def __len__(self) -> int:
         return len(self.moves)

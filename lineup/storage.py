@@ -207,7 +207,7 @@ class _Path(_Document):
 
 class _Motion(_Document):
     format: Literal["lineup-motion"] = "lineup-motion"
-    version: Literal[1] = 1
+    version: Literal[1, 2] = 2
     origin: Point
     letters: Letters
     moves: str
@@ -216,6 +216,9 @@ class _Motion(_Document):
     max_bend_deg: FiniteFloat
     straight: bool
     reason: str
+    n_angles: Annotated[int, Field(ge=0, le=2**20)] = 0
+    angles: str = ""
+    goal: tuple[Point, Letters] | None = None
 
     @classmethod
     def of(cls, motion: Any) -> _Motion:
@@ -231,6 +234,9 @@ class _Motion(_Document):
             max_bend_deg=float(motion.max_bend_deg),
             straight=bool(motion.straight),
             reason=motion.reason,
+            n_angles=len(motion.angles),
+            angles=notation.packed(motion.angles),
+            goal=notation.lettered(motion.goal) if len(motion.goal) else None,
         )
 
     def record(self) -> Motion:
@@ -241,7 +247,7 @@ class _Motion(_Document):
                 f"pose {wrong} has {len(self.poses[wrong])} letters, not {last}, one for each bar"
             )
         moves = [
-            notation.move(k, token, last, len(self.poses))
+            notation.move(k, token, last, len(self.poses), self.n_angles)
             for k, token in enumerate(self.moves.split())
         ]
         n_bars = last if self.poses else 0
@@ -254,6 +260,8 @@ class _Motion(_Document):
             self.straight,
             self.reason,
             poses.reshape(len(self.poses), n_bars),
+            notation.unpacked(self.angles, self.n_angles, last),
+            _rows([], 3) if self.goal is None else notation.positions(*self.goal),
         )
 
 
@@ -340,8 +348,11 @@ def _document_of(header: _Header) -> type[_Solid | _Path | _Motion | _Folding | 
     known = {d.model_fields["format"].default: d for d in _DOCUMENTS.values()}
     if header.format not in known:
         raise ValueError(f"unknown format {header.format!r}; known: {', '.join(known)}")
-    if header.version != 1:
-        raise ValueError(f"version {header.version} of {header.format}; this program reads 1")
+    latest = known[header.format].model_fields["version"].default
+    if not 1 <= header.version <= latest:
+        raise ValueError(
+            f"version {header.version} of {header.format}; this program reads 1 to {latest}"
+        )
     return known[header.format]
 
 

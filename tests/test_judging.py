@@ -216,7 +216,7 @@ FAULTS = {
         5,
         "malformed: (PEEL, 22, 24, 1) names joints that",
     ),
-    "unknown kind": (altered(FLAT, 2, (4, 26, 27, 1)), 2, "malformed: (4, 26, 27, 1) is of no"),
+    "unknown kind": (altered(FLAT, 2, (9, 26, 27, 1)), 2, "malformed: (9, 26, 27, 1) is of no"),
     "door off the lattice lines": (
         one("ENUU", (Move.DOOR, 0, 4, 1)),
         0,

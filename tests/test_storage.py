@@ -138,7 +138,7 @@ def test_motion_text_is_the_documented_one(tmp_path):
         SQUARE, np.array(moves), 1.0, 90.0, True, "straight", np.array([[0, 0, 0]], np.int8)
     )
     fields = json.loads(lu.save(motion, tmp_path / "m.json").read_text())
-    assert (fields["format"], fields["version"]) == ("lineup-motion", 1)
+    assert (fields["format"], fields["version"]) == ("lineup-motion", 2)
     assert (fields["origin"], fields["letters"]) == ([0, 0, 0], "ENW")
     assert fields["moves"] == "p1+N s3-D d0:3- t0"
     assert fields["poses"] == ["EEE"]
@@ -176,7 +176,7 @@ def test_only_results_are_saved(tmp_path):
 FAULTS = {
     "not json": (None, None, "Invalid JSON"),
     "unknown format": ("format", "lineup-mesh", "unknown format 'lineup-mesh'"),
-    "later version": ("version", 2, "version 2 of lineup-folding; this program reads 1"),
+    "later version": ("version", 2, "version 2 of lineup-folding; this program reads 1 to 1"),
     "missing field": ("path", None, "path"),
     "extra field": ("colour", "red", "colour: Extra inputs"),
     "unknown letter": ("motion.letters", "ENX", "motion.letters"),

@@ -1,5 +1,7 @@
 """Facts about lattice poses that judging rests on."""
 
+from itertools import permutations, product
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -29,3 +31,17 @@ def largest_bend(pose: NDArray[np.int64]) -> tuple[float, int]:
     cosines = (bars[1:] * bars[:-1]).sum(axis=1)
     k = int(cosines.argmin())
     return 90.0 * float(1 - cosines[k]), k + 1
+
+
+def congruent(pose: NDArray[np.int64], goal: NDArray[np.int64]) -> bool:
+    """Whether a turn and a shift, but no mirror, bring pose to goal, joint by joint."""
+    if pose.shape != goal.shape:
+        return False
+    bars, wanted = np.diff(pose, axis=0), np.diff(goal, axis=0)
+    for axes in permutations(range(3)):
+        for signs in product((-1, 1), repeat=3):
+            turn = np.zeros((3, 3), np.int64)
+            turn[range(3), axes] = signs
+            if round(np.linalg.det(turn)) == 1 and np.array_equal(bars @ turn.T, wanted):
+                return True
+    return False

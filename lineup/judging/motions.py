@@ -7,7 +7,7 @@ from .. import grid
 from ..kinematics import Move
 from ..solid import Certificate, Motion
 from . import _sweeps
-from ._lattice import largest_bend, not_simple
+from ._lattice import congruent, largest_bend, not_simple
 from ._tilts import malformed_tilt, not_monotone
 
 _MALFORMED = {
@@ -24,8 +24,9 @@ def certify(motion: Motion, diameter: float = 0.999, max_bend_deg: float = 90.0)
     Bars two or more apart must keep `diameter` from each other (as centre lines of capsules),
     and consecutive bars must bend by `max_bend_deg` at most. The motion must be straight at some
     lattice pose: at its end if it unfolds, at its start if it folds, between if it leads from
-    one shape to another; `motion.straight` must tell truly whether it is at its end. What
-    `motion` says of its diameter and bend is not used.
+    one shape to another; or it must end in its `goal`, turned and shifted as a whole, if it has
+    one. `motion.straight` must tell truly whether it is straight at its end. What `motion` says
+    of its diameter and bend is not used.
 
     Parameters
     ----------
@@ -190,7 +191,10 @@ class _Trial:
             if straight:
                 return self._refuse("ends straight, but the motion says that it does not")
             return self._refuse(f"not straight: the last pose bends at joint {joint}")
-        if not self.was_straight:
+        if len(self.motion.goal):
+            if not congruent(self.pose, self.motion.goal.astype(np.int64)):
+                return self._refuse("the last pose is not the motion's goal, turned as a whole")
+        elif not self.was_straight:
             return self._refuse("ends not straight, and is straight nowhere before")
         return None
 
