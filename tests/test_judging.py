@@ -152,19 +152,19 @@ FAULTS = {
     "rod tip rises past a voxel": (
         motion(ROD_TIP_RISES, [(Move.PEEL, 7, 8, UP)]),
         0,
-        "the runs of bars 0 and 8 come within 0.414214,",
+        "bars 0 and 8 come within 0.414214,",
     ),
     "rod sweeps over a voxel": (
         one("EEEEUNNWD", (Move.SWING, 4, 3, NORTH)),
         0,
-        "the runs of bars 0 and 8 come within 0,",
+        "bars 1 and 8 come within 0,",
     ),
     "limb of a door touches": (
         one("DDESENUWU", (Move.DOOR, 3, 6, -1)),
         0,
-        "the runs of bars 3 and 7 come within 0,",
+        "bars 5 and 7 come within 0,",
     ),
-    "swapped moves": (swapped(SWAPPABLE, 0), 0, "the runs of bars 0 and 4 come within 0,"),
+    "swapped moves": (swapped(SWAPPABLE, 0), 0, "bars 3 and 5 come within 0,"),
     "bend of 180": (
         one("EEN", (Move.SWING, 2, 3, WEST), straight=False),
         0,

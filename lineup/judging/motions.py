@@ -6,19 +6,25 @@ from numpy.typing import NDArray
 from .. import grid
 from ..kinematics import Move
 from ..solid import Certificate, Motion
-from . import _sweeps
+from . import _turns
 from ._lattice import congruent, largest_bend, not_simple
-from ._tilts import malformed_tilt, not_monotone
+from ._tilts import malformed_tilt, not_monotone, tilt_box
+
+_ROUNDING = 1e-9
 
 _MALFORMED = {
-    _sweeps.KIND: "is of no known kind",
-    _sweeps.JOINTS: "names joints that its kind of move cannot turn",
-    _sweeps.DIRECTION: "must turn its bar to a direction 0..5 perpendicular to it",
-    _sweeps.DOOR: "must turn by value 1 or -1 about a lattice line that does not hold its joints",
+    _turns.JOINTS: "names joints that its kind of move cannot turn",
+    _turns.DIRECTION: "must turn its bar to a direction 0..5 perpendicular to it",
+    _turns.DOOR: "must turn by value 1 or -1 about a lattice line that does not hold its joints",
 }
 
 
-def certify(motion: Motion, diameter: float = 0.999, max_bend_deg: float = 90.0) -> Certificate:
+def certify(
+    motion: Motion,
+    diameter: float = 0.999,
+    max_bend_deg: float = 90.0,
+    within: tuple[float, float, float] | None = None,
+) -> Certificate:
     """Judge a whole motion, at every instant, from its start to its last pose (Section 6).
 
     Bars two or more apart must keep `diameter` from each other (as centre lines of capsules),
@@ -34,6 +40,9 @@ def certify(motion: Motion, diameter: float = 0.999, max_bend_deg: float = 90.0)
         In voxel units. The default is that of touching blocks less a numerical tolerance.
     max_bend_deg : float
         Between 0 (exclusive) and 180.
+    within : (float, float, float), optional
+        Sides, in voxel units and along the axes of `motion`, of a box that all blocks have to
+        stay in, wherever it is put: no side of the certificate's `extent` may be longer.
 
     Returns
     -------
@@ -41,7 +50,8 @@ def certify(motion: Motion, diameter: float = 0.999, max_bend_deg: float = 90.0)
         `clearance` is the smallest distance over the motion within 1e-9, but a TILT counts by a
         lower bound; a chain of less than three bars has infinite clearance. `where` is the first
         move that fails, -1 where the fault is in the start or the end. After a fault,
-        `clearance` and `bend_deg` cover the moves up to it.
+        `clearance`, `bend_deg` and `extent` cover the moves up to it, and that move as far as
+        it was judged.
 
     Notes
     -----
@@ -55,7 +65,8 @@ def certify(motion: Motion, diameter: float = 0.999, max_bend_deg: float = 90.0)
     Raises
     ------
     ValueError
-        If `diameter` is not positive or `max_bend_deg` is not in (0, 180].
+        If `diameter` is not positive, `max_bend_deg` is not in (0, 180], or `within` is not
+        three positive numbers.
 
     Examples
     --------
@@ -63,25 +74,32 @@ def certify(motion: Motion, diameter: float = 0.999, max_bend_deg: float = 90.0)
     >>> from lineup.kinematics import Move
     >>> corner = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (1, 2, 0)])
     >>> straighten = np.array([(Move.SWING, 1, 2, 0)])
-    >>> lu.certify(lu.Motion(corner, straighten, 1.0, 90.0, True, "straight")).reason
-    'certified'
+    >>> verdict = lu.certify(lu.Motion(corner, straighten, 1.0, 90.0, True, "straight"))
+    >>> verdict.reason, verdict.most_bent, verdict.extent
+    ('certified', (-1, 1), (4.0, 3.0, 1.0))
     """
     if not (np.isfinite(diameter) and diameter > 0):
         raise ValueError(f"diameter must be a positive number of voxels, got {diameter}")
     if not 0 < max_bend_deg <= 180:
         raise ValueError(f"max_bend_deg must be above 0 and at most 180, got {max_bend_deg}")
-    return _Trial(motion, diameter, max_bend_deg).verdict()
+    box = np.array([np.inf] * 3 if within is None else within, np.float64)
+    if box.shape != (3,) or not (box > 0).all():
+        raise ValueError(f"within must be three positive numbers of voxels, got {within}")
+    return _Trial(motion, diameter, max_bend_deg, box).verdict()
 
 
 class _Trial:
     """One motion under judgement: its pose, and what has been met so far."""
 
-    def __init__(self, motion: Motion, diameter: float, max_bend_deg: float) -> None:
+    def __init__(
+        self, motion: Motion, diameter: float, max_bend_deg: float, within: grid.FloatArray
+    ) -> None:
         self.motion = motion
-        self.diameter, self.max_bend_deg = diameter, max_bend_deg
+        self.diameter, self.max_bend_deg, self.within = diameter, max_bend_deg, within
         self.pose = np.array(motion.start, np.int64, order="C")
-        self.clearance = 1.0 if len(self.pose) > 3 else float("inf")
-        self.bend_deg = 0.0
+        self.clearance, self.nearest = float("inf"), (-1, -1, -1)
+        self.bend_deg, self.most_bent = 0.0, (-1, -1)
+        self.box = np.full((2, 3), np.nan)  # lowest and highest positions met
         self.was_straight = False
         self.checked = 0
 
@@ -103,55 +121,93 @@ class _Trial:
             max_bend_deg=self.max_bend_deg,
             bend_deg=self.bend_deg,
             moves_checked=self.checked,
+            nearest=self.nearest,
+            most_bent=self.most_bent,
+            extent=self._extent(),
         )
 
     def _refuse(self, reason: str, where: int = -1) -> Certificate:
         return self._certificate(ok=False, reason=reason, where=where)
+
+    def _extent(self) -> tuple[float, float, float]:
+        x, y, z = (self.box[1] - self.box[0] + 1).tolist()
+        return x, y, z
+
+    def _widen(self, box: grid.FloatArray) -> None:
+        """Take note that the centre lines reach as far as a box (2, 3), lowest and highest."""
+        self.box = np.stack([np.fmin(self.box[0], box[0]), np.fmax(self.box[1], box[1])])
+
+    def _note_bend(self, bend_deg: float, move: int, joint: int) -> None:
+        if bend_deg > self.bend_deg:
+            self.bend_deg, self.most_bent = bend_deg, (move, joint)
 
     def _start(self) -> Certificate | None:
         fault, _ = not_simple(self.pose)
         if fault:
             self.clearance = float("nan")
             return self._refuse(f"start: {fault}")
+        if len(self.pose) > 3:
+            self.clearance, self.nearest = 1.0, (-1, 0, 2)
         if self.clearance < self.diameter:
             return self._refuse(f"start: bars 0 and 2 are {self.clearance:g} apart")
-        self.bend_deg, joint = largest_bend(self.pose)
-        if self.bend_deg > self.max_bend_deg:
+        bend_deg, joint = largest_bend(self.pose)
+        self._note_bend(bend_deg, -1, joint)
+        if bend_deg > self.max_bend_deg:
             return self._refuse(f"start: bend of {self.bend_deg:g} degrees at joint {joint}")
         self.was_straight = self.bend_deg == 0
+        self._widen(np.stack([self.pose.min(axis=0), self.pose.max(axis=0)]))
+        return self._outgrown(-1)
+
+    def _outgrown(self, where: int) -> Certificate | None:
+        extent = self._extent()
+        for axis in range(3):
+            if extent[axis] > self.within[axis] + _ROUNDING:
+                return self._refuse(
+                    f"the blocks reach over {extent[axis]:.6g} along axis {axis}, "
+                    f"more than the {self.within[axis]:g} of the box",
+                    where,
+                )
         return None
 
     def _moves(self) -> Certificate | None:
-        moves = self.motion.moves.astype(np.int64)
-        while self.checked < len(moves):
-            tilts = moves[self.checked, 0] == Move.TILT
-            refused = self._tilt() if tilts else self._turns(moves)
+        judges = dict.fromkeys(_turns.KINDS, self._turns) | {Move.TILT: self._tilt}
+        while self.checked < len(self.motion):
+            where = self.checked
+            move = self.motion.moves[where]
+            if move[0] not in judges:
+                self.checked += 1
+                return self._refuse(f"malformed: {_named(move)} is of no known kind", where)
+            refused = judges[move[0]]() or self._outgrown(self.checked - 1)
             if refused:
                 return refused
         return None
 
-    def _turns(self, moves: NDArray[np.int64]) -> Certificate | None:
-        """Peels, swings and doors up to the next tilt."""
-        where, fault, clearance, bend_deg, straight, a, b = _sweeps.carry_out(
-            self.pose, moves, self.checked, self.diameter, self.max_bend_deg
-        )
-        self.checked = where + (fault != _sweeps.FINE)
-        if len(self.pose) > 3:
-            self.clearance = min(self.clearance, clearance)
-        self.bend_deg = max(self.bend_deg, bend_deg)
-        self.was_straight = self.was_straight or straight
-        if fault == _sweeps.FINE:
+    def _turns(self) -> Certificate | None:
+        """Peels, swings and doors up to the next move of another kind."""
+        moves, first = self.motion.moves.astype(np.int64), self.checked
+        limits = _turns.Limits(self.diameter, self.max_bend_deg, self.within - 1 + _ROUNDING)
+        found = _turns.carry_out(self.pose, moves, first, limits, self.box)
+        where = found.where
+        self.checked = where + (found.fault != _turns.FINE)
+        if found.clearance < self.clearance and len(self.pose) > 3:
+            self.clearance, self.nearest = found.clearance, found.near
+        if found.bend_deg > self.bend_deg:
+            self.bend_deg, self.most_bent = found.bend_deg, found.bent
+        self.was_straight = self.was_straight or found.straight
+        if found.fault in (_turns.FINE, _turns.OUTGROWN):
             return None
-        if fault == _sweeps.TOUCH:
-            a, b = min(a, b), max(a, b)
+        if found.fault == _turns.TOUCH:
+            _, a, b = found.near
             return self._refuse(
-                f"the runs of bars {a} and {b} come within {clearance:.6g}, "
+                f"bars {a} and {b} come within {found.clearance:.6g}, "
                 f"less than the diameter {self.diameter:g}",
                 where,
             )
-        if fault == _sweeps.BEND:
-            return self._refuse(f"bend of {bend_deg:g} degrees at joint {a}", where)
-        return self._refuse(f"malformed: {_named(moves[where])} {_MALFORMED[fault]}", where)
+        if found.fault == _turns.BEND:
+            joint = found.bent[1]
+            return self._refuse(f"bend of {found.bend_deg:g} degrees at joint {joint}", where)
+        move = _named(moves[where])
+        return self._refuse(f"malformed: {move} {_MALFORMED[found.fault]}", where)
 
     def _tilt(self) -> Certificate | None:
         where, move = self.checked, self.motion.moves[self.checked]
@@ -172,13 +228,14 @@ class _Trial:
         fault = not_monotone(bars, targets, turning)
         if fault:
             return self._refuse(f"tilt of a path that is not monotone: {fault}", where)
+        self._widen(tilt_box(self.pose[0], bars, targets, turning))
         self.pose[1:] = self.pose[0] + targets.cumsum(axis=0)
         fault, _ = not_simple(self.pose)
         if fault:
-            self.clearance = 0.0
+            self.clearance, self.nearest = 0.0, (where, -1, -1)
             return self._refuse(f"the tilt's last pose is not simple: {fault}", where)
         bend_deg, joint = largest_bend(self.pose)
-        self.bend_deg = max(self.bend_deg, bend_deg)
+        self._note_bend(bend_deg, where, joint)
         if bend_deg > self.max_bend_deg:
             return self._refuse(f"bend of {bend_deg:g} degrees at joint {joint}", where)
         self.was_straight = self.was_straight or bend_deg == 0
