@@ -56,8 +56,8 @@ def transform(
     Examples
     --------
     >>> import numpy as np, lineup as lu
-    >>> cube, slab = lu.VoxelSolid(np.ones((2, 2, 2), bool)), lu.VoxelSolid(np.ones((4, 2, 1), bool))
-    >>> motion = lu.transform(lu.fold(cube), lu.fold(slab))
+    >>> a, b = (lu.VoxelSolid(np.ones(shape, bool)) for shape in ((2, 2, 2), (4, 2, 1)))
+    >>> motion = lu.transform(lu.fold(a), lu.fold(b))
     >>> motion.reason, lu.certify(motion).reason
     ('reaches its goal', 'certified')
     """
@@ -120,8 +120,7 @@ def _compact(a: Motion, b: Motion, longest: int, seed: int) -> Iterator[Motion]:
         return
     for strand in _strands(longest):
         first, second = (
-            _stowed_by(motion, of_one, strand)
-            for motion, of_one in zip((a, b), plans, strict=True)
+            _stowed_by(motion, of_one, strand) for motion, of_one in zip((a, b), plans, strict=True)
         )
         if first is None or second is None:
             continue

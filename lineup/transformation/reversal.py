@@ -6,8 +6,10 @@ judge says of a motion holds of its reversal.
 
 from collections.abc import Iterator
 from itertools import permutations, product
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..grid import DIRECTIONS, IntArray, bar_directions
 from ..kinematics import QUARTER, Move, on_lattice
@@ -28,14 +30,16 @@ def opposite(d: int) -> int:
 
 def turned_code(turn: IntArray) -> IntArray:
     """Where a rotation (3, 3) of the lattice takes each of the six directions, (6,)."""
-    return np.argmax((DIRECTIONS @ turn.T) @ DIRECTIONS.T, axis=1).astype(np.int32)
+    code: IntArray = np.argmax(DIRECTIONS @ turn.T @ DIRECTIONS.T, axis=1).astype(np.int32)
+    return code
 
 
 def quarter_turn(before: int, after: int) -> IntArray:
     """The rotation (3, 3) by 90 degrees that takes one direction to another across it."""
     e, d = DIRECTIONS[before], DIRECTIONS[after]
     axis = np.cross(e, d)
-    return (np.outer(axis, axis) + np.outer(d, e) - np.outer(e, d)).astype(np.int32)
+    turn: IntArray = (np.outer(axis, axis) + np.outer(d, e) - np.outer(e, d)).astype(np.int32)
+    return turn
 
 
 def words(motion: Motion) -> Iterator[IntArray]:
@@ -47,7 +51,7 @@ def words(motion: Motion) -> Iterator[IntArray]:
         If the last pose is off the lattice; the words between are those of lattice poses, and
         the last such one where a pose is off it.
     """
-    bars = bar_directions(motion.start)
+    bars = bar_directions(motion.start).astype(np.int32)
     yield bars
     off = False
     for move in motion.moves.tolist():
@@ -62,19 +66,20 @@ def words(motion: Motion) -> Iterator[IntArray]:
 def _word_after(move: list[int], bars: IntArray, motion: Motion) -> IntArray:
     kind, joint, other, value = move
     if kind == Move.TILT:
-        return motion.poses[value].astype(np.int32)
+        tilted: IntArray = motion.poses[value].astype(np.int32)
+        return tilted
     if kind == Move.PULL:
-        return np.append(bars[1:], value) if joint else np.append(opposite(value), bars[:-1])
+        ends = (bars[1:], [value]) if joint else ([opposite(value)], bars[:-1])
+        return np.concatenate(ends).astype(np.int32)
     after = bars.copy()
     if kind == Move.BEND:
         across = bars % 3 != joint
         after[across] = np.array(_around(joint))[motion.angles[value, across] // QUARTER % 4]
     elif kind == Move.DOOR:
         axis = np.sign(DIRECTIONS[bars[joint:other]].sum(axis=0)) * value
-        (e,) = np.flatnonzero(axis)
-        e = int(e) if axis[e] > 0 else int(e) + 3
-        turn = quarter_turn((e + 1) % 3, (e + 2) % 3)
-        after[joint:other] = turned_code(turn if e < 3 else turn.T)[bars[joint:other]]
+        u, v = _around(int(np.abs(axis).argmax()))[:2]
+        turn = quarter_turn(u, v) if axis.sum() > 0 else quarter_turn(v, u)
+        after[joint:other] = turned_code(turn)[bars[joint:other]]
     else:
         bar = min(joint, other)
         forward = value if other > joint else opposite(value)
@@ -187,6 +192,6 @@ def joined(first: Motion, second: Motion, reason: str) -> Motion:
     )
 
 
-def _stacked(first: IntArray, second: IntArray) -> IntArray:
+def _stacked(first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
     parts = [rows for rows in (first, second) if len(rows)]
     return np.vstack(parts) if parts else first

@@ -88,8 +88,8 @@ def passed_on(start: IntArray, end: int, strand: int) -> Motion:
     while base != (n_joints - 1 if end else 0):
         outward = base - INWARD[end]
         bar = int(bars[min(base, outward)])
-        if (bar if end else opposite(bar)) != out:
-            other.moves.append((Move.PEEL, base, outward, out))
+        if (bar if end else opposite(bar)) != out:  # the stow rests, and all else is carried
+            other.moves.append((Move.PEEL, outward, base, opposite(out)))
         base = outward
         other.lay(base)
     return _motion(start, other.moves)
