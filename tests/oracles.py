@@ -84,6 +84,9 @@ def reversed_motion(motion):
         elif kind == Move.TILT:
             rows.append((kind, joint, other, len(targets)))
             targets.append(grid.bar_directions(pose))
+        elif kind == Move.PULL:
+            tail_bar = pose[[abs(other - 1), other]]
+            rows.append((kind, other, joint, int(grid.bar_directions(tail_bar)[0])))
         else:
             bar = pose[[joint, other]]
             rows.append((kind, joint, other, int(grid.bar_directions(bar)[0])))

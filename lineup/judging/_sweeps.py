@@ -1,6 +1,6 @@
 """Closed forms for the judge: how near two bodies of the chain come while one move is made.
 
-Every move but TILT starts from a lattice pose and turns by 90 degrees in the plane of two lattice
+Every move but TILT, PULL and BEND starts from a lattice pose and turns by 90 degrees in the plane of two lattice
 axes, from axis e to axis d. In the frame (x, y, h) with x along e, y along d and h along the third
 axis, distances along h stay as they are, and h is an integer: only bars that share a height
 can come nearer than 1. What is left is plane geometry between axis-parallel boxes with integer
@@ -24,6 +24,7 @@ FINE, KIND, JOINTS, DIRECTION, DOOR, TOUCH, BEND = range(7)
 """What `carry_out` found: nothing wrong, a malformed move (four ways), or a failed move."""
 
 _PEEL, _SWING, _DOOR, _TILT = int(Move.PEEL), int(Move.SWING), int(Move.DOOR), int(Move.TILT)
+_PULL = int(Move.PULL)
 _XLO, _YLO, _HLO, _XHI, _YHI, _HHI, _FIRST, _LAST = range(8)
 _OUTSIDE_CONE = -1e-9
 
@@ -32,12 +33,12 @@ _OUTSIDE_CONE = -1e-9
 def carry_out(
     pose: Ints, moves: Ints, first: int, diameter: float, max_bend_deg: float
 ) -> tuple[int, int, float, float, bool, int, int]:
-    """Judge the moves from row `first` on, moving `pose` along, up to a fault or a TILT.
+    """Judge the moves from row `first` on, moving `pose` along, up to a fault, a TILT or a PULL.
 
     Returns
     -------
     where, fault : int
-        Where it stopped and why; a TILT or the end of the list is `FINE`.
+        Where it stopped and why; a move judged elsewhere and the end of the list are `FINE`.
     clearance, bend_deg : float
         Smallest distance, capped at 1, and largest bend met, the failing move's included.
     straight : bool
@@ -54,7 +55,7 @@ def carry_out(
         corners += bend_at(pose, joint) > 0
     for where in range(first, len(moves)):
         kind, joint, other, value = moves[where]
-        if kind == _TILT:
+        if kind in (_TILT, _PULL):
             return where, FINE, clearance, bend_deg, straight, -1, -1
         fault = _malformed(pose, kind, joint, other, value)
         if fault != FINE:

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from .. import grid
 from ..kinematics import Move
 from ..solid import Certificate, Motion
-from . import _sweeps
+from . import _pulls, _sweeps
 from ._lattice import congruent, largest_bend, not_simple
 from ._tilts import malformed_tilt, not_monotone
 
@@ -16,6 +16,8 @@ _MALFORMED = {
     _sweeps.DIRECTION: "must turn its bar to a direction 0..5 perpendicular to it",
     _sweeps.DOOR: "must turn by value 1 or -1 about a lattice line that does not hold its joints",
 }
+
+_MALFORMED_PULL = "must lead from one end to the other, in a direction 0..5"
 
 
 def certify(motion: Motion, diameter: float = 0.999, max_bend_deg: float = 90.0) -> Certificate:
@@ -38,8 +40,8 @@ def certify(motion: Motion, diameter: float = 0.999, max_bend_deg: float = 90.0)
     Returns
     -------
     Certificate
-        `clearance` is the smallest distance over the motion within 1e-9, but a TILT counts by a
-        lower bound; a chain of less than three bars has infinite clearance. `where` is the first
+        `clearance` is the smallest distance over the motion within 1e-9, but TILT and PULL count by
+        lower bounds; a chain of less than three bars has infinite clearance. `where` is the first
         move that fails, -1 where the fault is in the start or the end. After a fault,
         `clearance` and `bend_deg` cover the moves up to it.
 
@@ -50,7 +52,10 @@ def certify(motion: Motion, diameter: float = 0.999, max_bend_deg: float = 90.0)
     joints. A TILT is judged by a lemma: all its bars turn to one direction (or all from it), no
     bar steps against it, and a bar that rests neither has that direction nor an axis of a
     bar that turns; then no two points come nearer than in the folded one of its two poses.
-    Any other TILT is refused.
+    Any other TILT is refused. A PULL is judged by a lemma, too: where the P + 1 voxels that the
+    chain leaves, passes and reaches are all different, bars keep 1 from each other if these
+    lie in a straight line; .9142, with bends of 90 degrees at most, if they make corners but no
+    U (three edges of a unit square in a row); sqrt(3)/2 and 120 degrees if they do.
 
     Raises
     ------
@@ -124,14 +129,19 @@ class _Trial:
     def _moves(self) -> Certificate | None:
         moves = self.motion.moves.astype(np.int64)
         while self.checked < len(moves):
-            tilts = moves[self.checked, 0] == Move.TILT
-            refused = self._tilt() if tilts else self._turns(moves)
+            match moves[self.checked, 0]:
+                case Move.TILT:
+                    refused = self._tilt()
+                case Move.PULL:
+                    refused = self._pulls(moves)
+                case _:
+                    refused = self._turns(moves)
             if refused:
                 return refused
         return None
 
     def _turns(self, moves: NDArray[np.int64]) -> Certificate | None:
-        """Peels, swings and doors up to the next tilt."""
+        """Peels, swings and doors up to the next move of another kind."""
         where, fault, clearance, bend_deg, straight, a, b = _sweeps.carry_out(
             self.pose, moves, self.checked, self.diameter, self.max_bend_deg
         )
@@ -152,6 +162,40 @@ class _Trial:
         if fault == _sweeps.BEND:
             return self._refuse(f"bend of {bend_deg:g} degrees at joint {a}", where)
         return self._refuse(f"malformed: {_named(moves[where])} {_MALFORMED[fault]}", where)
+
+    def _pulls(self, moves: NDArray[np.int64]) -> Certificate | None:
+        """Pulls by one end up to the next move that is none of them."""
+        first, last = self.checked, len(self.pose) - 1
+        head, tail = (int(x) for x in moves[first, 1:3])
+        values = moves[first:, 3]
+        run = (moves[first:, :3] == moves[first, :3]).all(axis=1) & (values >= 0) & (values < 6)
+        if {head, tail} != {0, last} or head == tail or not run[0]:
+            self.checked += 1
+            return self._refuse(f"malformed: {_named(moves[first])} {_MALFORMED_PULL}", first)
+        values = values[: len(run) if run.all() else int(np.argmin(run))]
+        ahead = slice(None, None, 1 if head == last else -1)
+        steps = grid.DIRECTIONS[values].astype(np.int64)
+        pulled = _pulls.carry_out(self.pose[ahead], steps, self.diameter, self.max_bend_deg)
+        self.pose = np.ascontiguousarray(pulled.pose[ahead])
+        self.clearance = min(self.clearance, pulled.clearance)
+        self.bend_deg = max(self.bend_deg, pulled.bend_deg)
+        self.was_straight = self.was_straight or pulled.straight
+        where = first + pulled.made
+        self.checked = where + (pulled.fault != _pulls.FINE)
+        if pulled.fault == _pulls.FINE:
+            return None
+        if pulled.fault == _pulls.BACK:
+            return self._refuse(f"malformed: {_named(moves[where])} goes straight back", where)
+        if pulled.fault == _pulls.BLOCKED:
+            joint = pulled.joint if head == last else last - pulled.joint
+            return self._refuse(f"the pull is blocked: joint {joint} is in the way", where)
+        if pulled.fault == _pulls.TOUCH:
+            return self._refuse(
+                f"a pull is proven to keep {pulled.clearance:.6g} only, "
+                f"less than the diameter {self.diameter:g}",
+                where,
+            )
+        return self._refuse(f"a pull bends joints by {pulled.bend_deg:g} degrees", where)
 
     def _tilt(self) -> Certificate | None:
         where, move = self.checked, self.motion.moves[self.checked]
