@@ -13,8 +13,8 @@ c - a is largest at a = 30, c = 60: the bend is 120 at most.
 Bars k and k + 2 lie beyond the two ends of bar k + 1, of direction u. Without a U neither has a
 component against u, so that a slab of width 1 is between them. With a U at k + 1 (two Us in a row
 would close a square), the point of bar k nearest to joint k + 2 is the foot of a perpendicular
-of length cos(c - a), from which bar k + 2 leads no nearer: the distance is cos(30) at least. With a U
-at k + 2 the same holds backwards.
+of length cos(c - a), and bar k + 2 leads no nearer: the distance is cos(30) at least. With a U at
+k + 2 the same holds backwards.
 
 Bars three or more apart lie in triangles of three vertices each that share none, up to a shift one
 of 5,031 + 5,030 pairs. `proofs/pull_table.py` shows by interval arithmetic that they keep .9142
@@ -44,9 +44,9 @@ FINE, BACK, BLOCKED, TOUCH, BEND = range(5)
 class Pulled(NamedTuple):
     """What a run of pulls by one end has come to.
 
-    `made` counts the pulls before the fault. `clearance` and `bend_deg` cover those and the one that
-    fails; `joint` is the one whose voxel a `BLOCKED` head meets. `straight` tells whether one of
-    the pulls ended on a straight line.
+    `made` counts the pulls before the fault. `clearance` and `bend_deg` cover those and the one
+    that fails; `joint` is the one whose voxel a `BLOCKED` head meets. `straight` tells whether
+    one of the pulls ended on a straight line.
     """
 
     pose: NDArray[np.int64]

@@ -1,6 +1,6 @@
 """Closed forms for the judge: how near two bodies of the chain come while one move is made.
 
-Every move but TILT, PULL and BEND starts from a lattice pose and turns by 90 degrees in the plane of two lattice
+PEEL, SWING and DOOR start from a lattice pose and turn by 90 degrees in the plane of two lattice
 axes, from axis e to axis d. In the frame (x, y, h) with x along e, y along d and h along the third
 axis, distances along h stay as they are, and h is an integer: only bars that share a height
 can come nearer than 1. What is left is plane geometry between axis-parallel boxes with integer

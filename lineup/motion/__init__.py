@@ -19,7 +19,8 @@ def unfold(path: VoxelPath, method: str = "auto", seed: int = 0, **options: Any)
         A key of `MOTION_METHODS`. ``"accordion"`` straightens a monotone path in one move;
         ``"peel"`` searches for an order in which the two ends let go of bar after bar, with
         options `tries` and `patience`; ``"pull"`` draws the chain out along its own track, for
-        thinner bars, see `Motion.diameter` and `max_bend_deg`; ``"auto"`` peels where the accordion cannot.
+        thinner bars, see `Motion.diameter` and `max_bend_deg`; ``"auto"`` peels where the
+        accordion cannot.
     seed : int
         The same path, seed and options give the same motion.
 

@@ -29,7 +29,7 @@ def pull(path: VoxelPath, seed: int) -> Motion:
     """Pull the chain out by the end that leaves without a U, or else with one, in fewer pulls."""
     del seed  # nothing is drawn
     bars = bar_directions(path.voxels)
-    kinds = (U_FREE, WITH_US) if not _has_u(bars) else (WITH_US,)
+    kinds = (U_FREE, WITH_US) if not has_u(bars) else (WITH_US,)
     for diameter, max_bend_deg in kinds:
         u_free = (diameter, max_bend_deg) == U_FREE
         found = [_moves(path.voxels, head, u_free=u_free) for head in (len(bars), 0)]
@@ -42,12 +42,8 @@ def pull(path: VoxelPath, seed: int) -> Motion:
     return Motion(path.voxels, nothing, diameter, max_bend_deg, False, reason)
 
 
-def is_pulled(motion: Motion) -> bool:
-    """Whether a motion ends straight and has no other moves than pulls."""
-    return motion.straight and bool((motion.moves[:, 0] == Move.PULL).all())
-
-
-def _has_u(bars: NDArray[np.int8]) -> bool:
+def has_u(bars: NDArray[np.int8]) -> bool:
+    """Whether three of these edges in a row are sides of one unit square."""
     return bool(((bars[2:] + 3) % 6 == bars[:-2]).any())
 
 
