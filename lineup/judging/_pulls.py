@@ -16,10 +16,11 @@ would close a square), the point of bar k nearest to joint k + 2 is the foot of 
 of length cos(c - a), and bar k + 2 leads no nearer: the distance is cos(30) at least. With a U at
 k + 2 the same holds backwards.
 
-Bars three or more apart lie in triangles of three vertices each that share none, up to a shift one
-of 5,031 + 5,030 pairs. `proofs/pull_table.py` shows by interval arithmetic that they keep .9142
-from each other at any two phases; the least distance is sqrt(2) - 1/2, of a bar half way round a
-corner from the vertex in its crook.
+Bars three or more apart lie in triangles of three vertices each that share none: up to turns,
+mirrors and shifts one of 18,110 pairs. `proofs/pull_table.py` shows by interval arithmetic that
+they keep .9142 from each other. If one of the triangles is flat this holds at any two phases; of
+two corners that a wave passes, the later is further on, at least by the g of each corner between.
+A bar half way round a corner comes as near as sqrt(2) - 1/2 to the vertex in its crook.
 """
 
 from math import sqrt
