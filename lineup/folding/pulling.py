@@ -20,9 +20,6 @@ from ..motion import unfold
 from ..motion.pulling import has_u
 from ..solid import Folding, Motion, VoxelSolid
 
-LEAST_INDEX = 4
-"""A pair with two voxels between makes a U already, so that a path without Us has none."""
-
 NO_BAR = -1
 
 
@@ -49,9 +46,9 @@ def is_pulled(motion: Motion) -> bool:
 def shortened_pulled(folding: Folding, length: int, keep: BoolArray) -> Folding:
     """A pulled folding cut down to `length` voxels, without a U if it has none.
 
-    What is taken off frees voxels and no more, so the old track still leads out. In a path
-    without Us the voxels between contraction pairs go first, where there are none to keep and the
-    contraction makes no U, the shortest first; then blocks off both ends, where they cost least.
+    What is taken off frees voxels and no more, so the old track still leads out. From a path
+    without Us go the voxels between contraction pairs that make no U, the least share of voxels
+    to keep first, and then blocks off both ends, as soon as they cost a smaller share.
     """
     path, moves = folding.path, folding.motion.moves
     if has_u(bar_directions(path.voxels)):
@@ -69,37 +66,33 @@ def _without_a_u(voxels: IntArray, way_out: IntArray, kept: BoolArray, length: i
     """How each step of a path without Us goes; `way_out` are the two edges after it."""
     fate = np.full(len(voxels), STAYS, np.int8)
     steps = np.arange(len(voxels))
-    while (excess := len(steps) - length) >= LEAST_INDEX:
-        pairs = _harmless_pairs(voxels[steps], way_out, kept[steps], excess)
-        if not len(pairs):
+    while len(steps) > length:
+        excess = len(steps) - length
+        lost = np.concatenate([[0], kept[steps].cumsum()])
+        first = np.arange(0, excess + 1, 2)
+        off_the_ends = lost[first] + lost[-1] - lost[first + length]
+        pairs = _harmless_pairs(voxels[steps], way_out, excess)
+        share = n_between(kept[steps], pairs) / (pairs[:, 1] - pairs[:, 0] - 1)
+        if share.min(initial=np.inf) > off_the_ends.min() / excess:
+            a = int(first[off_the_ends.argmin()])
+            fate[steps[:a]] = fate[steps[a + length :]] = END
             break
-        inside = between(pairs)
+        inside = between(_apart(pairs[share == share.min()], excess))
         fate[steps[inside]] = PAIR
         steps = np.delete(steps, inside)
-    excess = len(steps) - length
-    n_before = np.concatenate([[0], kept[steps].cumsum()])
-    first = np.arange(0, excess + 1, 2)
-    cost = n_before[first] + n_before[-1] - n_before[first + length]
-    a = int(first[cost.argmin()])
-    fate[steps[:a]] = fate[steps[a + length :]] = END
     return fate
 
 
-def _harmless_pairs(voxels: IntArray, way_out: IntArray, kept: BoolArray, excess: int) -> IntArray:
-    """Contraction pairs of a track with nothing to keep between, which together make no U.
-
-    They come to `excess` voxels at most, the shortest first.
-    """
+def _harmless_pairs(voxels: IntArray, way_out: IntArray, most: int) -> IntArray:
+    """Contraction pairs of index `most` at most that make no U, the shortest first."""
     pairs = adjacent_steps(voxels, DIRECTIONS)
-    index = pairs[:, 1] - pairs[:, 0] - 1
-    pairs = pairs[(n_between(kept, pairs) == 0) & (index <= excess)]
+    pairs = pairs[pairs[:, 1] - pairs[:, 0] - 1 <= most]
     i, j = pairs.T
     bars = np.concatenate([[NO_BAR] * 2, bar_directions(voxels), way_out])  # bar k in place k + 2
-    new = _directions(voxels[j] - voxels[i])
-    back = (new + 3) % 6
+    back = (_directions(voxels[j] - voxels[i]) + 3) % 6
     makes_u = (bars[i] == back) | (bars[j + 3] == back) | (bars[i + 1] == (bars[j + 2] + 3) % 6)
     pairs = pairs[~makes_u]
-    return _apart(pairs[np.argsort(pairs[:, 1] - pairs[:, 0], kind="stable")], excess)
+    return pairs[np.argsort(pairs[:, 1] - pairs[:, 0], kind="stable")]
 
 
 def _directions(steps: IntArray) -> IntArray:

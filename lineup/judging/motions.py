@@ -195,7 +195,7 @@ class _Trial:
                 f"less than the diameter {self.diameter:g}",
                 where,
             )
-        return self._refuse(f"a pull bends joints by {pulled.bend_deg:g} degrees", where)
+        return self._refuse(f"bend of {pulled.bend_deg:g} degrees round a corner or U", where)
 
     def _tilt(self) -> Certificate | None:
         where, move = self.checked, self.motion.moves[self.checked]

@@ -79,7 +79,7 @@ def _way_out(voxels: IntArray, head: int, track: list[int], *, u_free: bool) -> 
     while queue:
         state = queue.popleft()
         cell, last, before = state
-        onward = [d for d in range(6) if (d + 3) % 6 not in (last, before)]
+        onward = [d for d in (last, *range(6)) if (d + 3) % 6 not in (last, before)]
         for d in onward:
             if opens[d, cell]:
                 states = _led(came_from, state)
