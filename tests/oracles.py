@@ -101,6 +101,12 @@ def reversed_motion(motion):
     )
 
 
+def n_us(voxels):
+    """How often three edges of a lattice path in a row are sides of a unit square."""
+    a, b, c, d = voxels[:-3], voxels[1:-2], voxels[2:-1], voxels[3:]
+    return int((a - b + c == d).all(axis=1).sum())
+
+
 def layer_runs(voxels, occupancy):
     """Maximal runs of a path in one layer component: rows (start, stop, component), by flooding."""
     component = {}

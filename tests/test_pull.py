@@ -4,11 +4,11 @@ import itertools
 
 import numpy as np
 import pytest
+from contracts import NOT_STRAIGHT
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from contracts import NOT_STRAIGHT
 from numpy.testing import assert_allclose
-from oracles import pose_bend_deg, pose_clearance, reversed_motion, sampled_move
+from oracles import n_us, pose_bend_deg, pose_clearance, reversed_motion, sampled_move
 from polycubes import polycubes
 from scipy import ndimage
 
@@ -61,11 +61,6 @@ def tracks(draw, max_bars=16, max_pulls=8, u_free=False):
     return np.array(track[: n_bars + 1]), word
 
 
-def has_u(track):
-    """Whether three edges in a row are sides of a unit square."""
-    return any((a - b + c == d).all() for a, b, c, d in zip(track, track[1:], track[2:], track[3:]))
-
-
 @settings(max_examples=30, deadline=None)
 @given(st.booleans().flatmap(lambda u_free: tracks(u_free=u_free)), st.booleans())
 def test_the_lemma_holds_on_every_track(track, by_first):
@@ -77,7 +72,7 @@ def test_the_lemma_holds_on_every_track(track, by_first):
     verdict = lu.certify(trial, diameter=0.5, max_bend_deg=120)
     assert (verdict.where, verdict.moves_checked) == (-1, len(trial))
     bends = pose_bend_deg(whole.astype(float)) > 0
-    proven = (ROUND_US, 120) if has_u(whole) else (ROUND_CORNERS, 90) if bends else (1, 0)
+    proven = (ROUND_US, 120) if n_us(whole) else (ROUND_CORNERS, 90) if bends else (1, 0)
     clearance, bend_deg = proven if len(start) > 3 else (np.inf, proven[1] * (len(start) > 2))
     assert (verdict.clearance, verdict.bend_deg) == (clearance, bend_deg)
     for pose in lu.frames(trial, substeps=15):
@@ -184,7 +179,7 @@ def test_pulls_go_together_with_moves_of_other_kinds():
         verdict = lu.certify(motion, diameter=0.914)
         assert verdict.ok, verdict.reason
         assert (verdict.clearance, verdict.bend_deg) == (ROUND_CORNERS, 90)
-    assert [m for m in lu.frames(mixed)][4].tolist() == walk("UUUUUU", (2, 2, 0)).tolist()
+    assert list(lu.frames(mixed))[4].tolist() == walk("UUUUUU", (2, 2, 0)).tolist()
 
 
 def test_a_second_opinion_from_continuous_collision_detection():
@@ -234,7 +229,7 @@ def test_a_chain_is_pulled_out_wherever_a_way_leads_out(occupancy, seed):
     assert motion.straight == leads_out
     if leads_out:
         check_pulled(motion)
-        assert not has_u(path.voxels) or motion.max_bend_deg == 120
+        assert not n_us(path.voxels) or motion.max_bend_deg == 120
 
 
 def test_both_ends_shut_in_is_a_reason():

@@ -91,8 +91,8 @@ def _harmless_pairs(voxels: IntArray, way_out: IntArray, most: int) -> IntArray:
     bars = np.concatenate([[NO_BAR] * 2, bar_directions(voxels), way_out])  # bar k in place k + 2
     back = (_directions(voxels[j] - voxels[i]) + 3) % 6
     makes_u = (bars[i] == back) | (bars[j + 3] == back) | (bars[i + 1] == (bars[j + 2] + 3) % 6)
-    pairs = pairs[~makes_u]
-    return pairs[np.argsort(pairs[:, 1] - pairs[:, 0], kind="stable")]
+    harmless: IntArray = pairs[~makes_u]
+    return harmless[np.argsort(harmless[:, 1] - harmless[:, 0], kind="stable")]
 
 
 def _directions(steps: IntArray) -> IntArray:
