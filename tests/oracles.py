@@ -84,6 +84,9 @@ def reversed_motion(motion):
         elif kind == Move.TILT:
             rows.append((kind, joint, other, len(targets)))
             targets.append(grid.bar_directions(pose))
+        elif kind == Move.PULL:
+            tail_bar = pose[[abs(other - 1), other]]
+            rows.append((kind, other, joint, int(grid.bar_directions(tail_bar)[0])))
         else:
             bar = pose[[joint, other]]
             rows.append((kind, joint, other, int(grid.bar_directions(bar)[0])))
@@ -96,6 +99,12 @@ def reversed_motion(motion):
         "reversed",
         np.array(targets, np.int8).reshape(len(targets), len(poses[0]) - 1 if targets else 0),
     )
+
+
+def n_us(voxels):
+    """How often three edges of a lattice path in a row are sides of a unit square."""
+    a, b, c, d = voxels[:-3], voxels[1:-2], voxels[2:-1], voxels[3:]
+    return int((a - b + c == d).all(axis=1).sum())
 
 
 def layer_runs(voxels, occupancy):

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from .. import grid
 from ..kinematics import Move
 from ..solid import Certificate, Motion
-from . import _turns
+from . import _pulls, _turns
 from ._lattice import congruent, largest_bend, not_simple
 from ._tilts import malformed_tilt, not_monotone, tilt_box
 
@@ -17,6 +17,8 @@ _MALFORMED = {
     _turns.DIRECTION: "must turn its bar to a direction 0..5 perpendicular to it",
     _turns.DOOR: "must turn by value 1 or -1 about a lattice line that does not hold its joints",
 }
+
+_MALFORMED_PULL = "must lead from one end to the other, in a direction 0..5"
 
 
 def certify(
@@ -47,8 +49,8 @@ def certify(
     Returns
     -------
     Certificate
-        `clearance` is the smallest distance over the motion within 1e-9, but a TILT counts by a
-        lower bound; a chain of less than three bars has infinite clearance. `where` is the first
+        `clearance` is the smallest distance over the motion within 1e-9, but TILT and PULL count by
+        lower bounds; a chain of less than three bars has infinite clearance. `where` is the first
         move that fails, -1 where the fault is in the start or the end. After a fault,
         `clearance`, `bend_deg` and `extent` cover the moves up to it, and that move as far as
         it was judged.
@@ -60,7 +62,10 @@ def certify(
     joints. A TILT is judged by a lemma: all its bars turn to one direction (or all from it), no
     bar steps against it, and a bar that rests neither has that direction nor an axis of a
     bar that turns; then no two points come nearer than in the folded one of its two poses.
-    Any other TILT is refused.
+    Any other TILT is refused. A PULL is judged by a lemma, too: where the P + 1 voxels that the
+    chain leaves, passes and reaches are all different, bars keep 1 from each other if these
+    lie in a straight line; .9142, with bends of 90 degrees at most, if they make corners but no
+    U (three edges of a unit square in a row); sqrt(3)/2 and 120 degrees if they do.
 
     Raises
     ------
@@ -170,7 +175,8 @@ class _Trial:
         return None
 
     def _moves(self) -> Certificate | None:
-        judges = dict.fromkeys(_turns.KINDS, self._turns) | {Move.TILT: self._tilt}
+        judges = dict.fromkeys(_turns.KINDS, self._turns)
+        judges |= {Move.TILT: self._tilt, Move.PULL: self._pulls}
         while self.checked < len(self.motion):
             where = self.checked
             move = self.motion.moves[where]
@@ -208,6 +214,43 @@ class _Trial:
             return self._refuse(f"bend of {found.bend_deg:g} degrees at joint {joint}", where)
         move = _named(moves[where])
         return self._refuse(f"malformed: {move} {_MALFORMED[found.fault]}", where)
+
+    def _pulls(self) -> Certificate | None:
+        """Pulls by one end up to the next move that is none of them."""
+        moves, first, last = self.motion.moves, self.checked, len(self.pose) - 1
+        head, tail = (int(x) for x in moves[first, 1:3])
+        values = moves[first:, 3]
+        run = (moves[first:, :3] == moves[first, :3]).all(axis=1) & (values >= 0) & (values < 6)
+        if {head, tail} != {0, last} or head == tail or not run[0]:
+            self.checked += 1
+            return self._refuse(f"malformed: {_named(moves[first])} {_MALFORMED_PULL}", first)
+        values = values[: len(run) if run.all() else int(np.argmin(run))]
+        ahead = slice(None, None, 1 if head == last else -1)
+        steps = grid.DIRECTIONS[values].astype(np.int64)
+        pulled = _pulls.carry_out(self.pose[ahead], steps, self.diameter, self.max_bend_deg)
+        where = first + pulled.made
+        heads = self.pose[head] + np.vstack([0 * steps[:1], steps[: pulled.made]]).cumsum(axis=0)
+        self._widen(np.stack([heads.min(axis=0), heads.max(axis=0)]))
+        self.pose = np.ascontiguousarray(pulled.pose[ahead])
+        if pulled.clearance < self.clearance:
+            self.clearance, self.nearest = pulled.clearance, (first, -1, -1)
+        self._note_bend(pulled.bend_deg, first, -1)
+        self.was_straight = self.was_straight or pulled.straight
+        self.checked = where + (pulled.fault != _pulls.FINE)
+        if pulled.fault == _pulls.FINE:
+            return None
+        if pulled.fault == _pulls.BACK:
+            return self._refuse(f"malformed: {_named(moves[where])} goes straight back", where)
+        if pulled.fault == _pulls.BLOCKED:
+            joint = pulled.joint if head == last else last - pulled.joint
+            return self._refuse(f"the pull is blocked: joint {joint} is in the way", where)
+        if pulled.fault == _pulls.TOUCH:
+            return self._refuse(
+                f"a pull is proven to keep {pulled.clearance:.6g} only, "
+                f"less than the diameter {self.diameter:g}",
+                where,
+            )
+        return self._refuse(f"bend of {pulled.bend_deg:g} degrees round a corner or U", where)
 
     def _tilt(self) -> Certificate | None:
         where, move = self.checked, self.motion.moves[self.checked]
