@@ -4,55 +4,16 @@ import itertools
 
 import numpy as np
 import pytest
+from chains import chains, single, turns
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from oracles import pose_bend_deg, pose_clearance, reversed_motion, sampled_move
-from polycubes import STEPS
 
 import lineup as lu
 from lineup import grid
 from lineup.kinematics import Move
 
 NEAR = 1e-6  # of the local refinement; the closed forms are exact
-
-
-@st.composite
-def chains(draw, max_bars=12):
-    """A simple lattice path of 3 to `max_bars` bars, often crumpled."""
-    voxels = [(0, 0, 0)]
-    n_bars = draw(st.integers(3, max_bars))
-    for _ in range(n_bars):
-        x, y, z = voxels[-1]
-        free = [
-            (x + dx, y + dy, z + dz)
-            for dx, dy, dz in STEPS
-            if (x + dx, y + dy, z + dz) not in voxels
-        ]
-        assume(free)
-        voxels.append(draw(st.sampled_from(free)))
-    return np.array(voxels)
-
-
-def turns(pose):
-    """Every well-formed PEEL, SWING and DOOR of a lattice pose."""
-    n = len(pose)
-    rows = []
-    for joint in range(n):
-        for other in (joint - 1, joint + 1):
-            if 0 <= other < n:
-                bar = pose[other] - pose[joint]
-                values = [d for d in range(6) if not bar[d % 3]]
-                rows += [(k, joint, other, d) for k in (Move.PEEL, Move.SWING) for d in values]
-        for other in range(joint + 2, n):
-            apart = np.abs(pose[other] - pose[joint])
-            if apart.max() == apart.sum() < other - joint:
-                rows += [(Move.DOOR, joint, other, value) for value in (1, -1)]
-    return rows
-
-
-def single(start, row, pose=()):
-    poses = np.array([pose], np.int8) if len(pose) else np.empty((0, 0), np.int8)
-    return lu.Motion(start, np.array([row], int), 1.0, 90.0, False, "one move", poses)
 
 
 @settings(max_examples=120, deadline=None)
