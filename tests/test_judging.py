@@ -292,7 +292,9 @@ def test_a_doctored_record_is_judged_by_what_it_holds():
     start = FLAT.start.astype(float)
     start[4:] -= (0.5, 0, 0)
     object.__setattr__(bad, "start", start)
-    assert lu.certify(bad).reason == "start: voxels 3 and 4 do not share a face"
+    verdict = lu.certify(bad)
+    assert verdict.reason == "start: voxels 3 and 4 do not share a face"
+    assert np.isnan(verdict.extent).all()
     with pytest.raises(ValueError, match="start must be an integer array"):
         motion(start, FLAT.moves)
 
