@@ -113,11 +113,11 @@ def _arc_box(x: int, y: int) -> Box:
 
 @kernel
 def _distance(m: Ints, r: Ints, turning: bool) -> float:
-    return _turn_distance(m, r) if turning else _slide_distance(m, r)
+    return turn_distance(m, r) if turning else slide_distance(m, r)
 
 
 @kernel
-def _slide_distance(m: Ints, r: Ints) -> float:
+def slide_distance(m: Ints, r: Ints) -> float:
     """Smallest distance while run m slides along the unit arc from (1, 0) to (0, 1).
 
     They meet where the arc's point lies in the Minkowski difference of the two boxes.
@@ -130,7 +130,7 @@ def _slide_distance(m: Ints, r: Ints) -> float:
 
 
 @kernel
-def _turn_distance(m: Ints, r: Ints) -> float:
+def turn_distance(m: Ints, r: Ints) -> float:
     """Smallest distance while run m turns by a quarter, counter-clockwise about the origin.
 
     The first contact of two segments in a plane is made by an end of one of them, and so is
