@@ -23,7 +23,8 @@ Near = tuple[float, int, int]  # a distance, capped at 1, and the first bars of 
 FINE, KIND, JOINTS, DIRECTION, DOOR, TOUCH, BEND = range(7)
 """What `carry_out` found: nothing wrong, a malformed move (four ways), or a failed move."""
 
-_PEEL, _SWING, _DOOR, _TILT = int(Move.PEEL), int(Move.SWING), int(Move.DOOR), int(Move.TILT)
+_PEEL, _SWING, _DOOR = int(Move.PEEL), int(Move.SWING), int(Move.DOOR)
+_TILT, _BEND = int(Move.TILT), int(Move.BEND)
 _XLO, _YLO, _HLO, _XHI, _YHI, _HHI, _FIRST, _LAST = range(8)
 _OUTSIDE_CONE = -1e-9
 
@@ -32,12 +33,12 @@ _OUTSIDE_CONE = -1e-9
 def carry_out(
     pose: Ints, moves: Ints, first: int, diameter: float, max_bend_deg: float
 ) -> tuple[int, int, float, float, bool, int, int]:
-    """Judge the moves from row `first` on, moving `pose` along, up to a fault or a TILT.
+    """Judge the moves from row `first` on, moving `pose` along, up to a fault, a TILT or a BEND.
 
     Returns
     -------
     where, fault : int
-        Where it stopped and why; a TILT or the end of the list is `FINE`.
+        Where it stopped and why; one of those or the end of the list is `FINE`.
     clearance, bend_deg : float
         Smallest distance, capped at 1, and largest bend met, the failing move's included.
     straight : bool
@@ -54,7 +55,7 @@ def carry_out(
         corners += bend_at(pose, joint) > 0
     for where in range(first, len(moves)):
         kind, joint, other, value = moves[where]
-        if kind == _TILT:
+        if kind in (_TILT, _BEND):
             return where, FINE, clearance, bend_deg, straight, -1, -1
         fault = _malformed(pose, kind, joint, other, value)
         if fault != FINE:

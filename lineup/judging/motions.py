@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from .. import grid
 from ..kinematics import Move
 from ..solid import Certificate, Motion
-from . import _sweeps
+from . import _bends, _sweeps
 from ._lattice import congruent, largest_bend, not_simple
 from ._tilts import malformed_tilt, not_monotone
 
@@ -39,9 +39,10 @@ def certify(motion: Motion, diameter: float = 0.999, max_bend_deg: float = 90.0)
     -------
     Certificate
         `clearance` is the smallest distance over the motion within 1e-9, but a TILT counts by a
-        lower bound; a chain of less than three bars has infinite clearance. `where` is the first
-        move that fails, -1 where the fault is in the start or the end. After a fault,
-        `clearance` and `bend_deg` cover the moves up to it.
+        lower bound, and a BEND by one that is at most 1e-4 too low; a chain of less than three
+        bars has infinite clearance. `where` is the first move that fails, -1 where the fault is
+        in the start or the end. After a fault, `clearance` and `bend_deg` cover the moves up to
+        it.
 
     Notes
     -----
@@ -51,6 +52,11 @@ def certify(motion: Motion, diameter: float = 0.999, max_bend_deg: float = 90.0)
     bar steps against it, and a bar that rests neither has that direction nor an axis of a
     bar that turns; then no two points come nearer than in the folded one of its two poses.
     Any other TILT is refused.
+
+    A BEND must begin in the pose that is, angles counted modulo a full turn, and may end off the
+    lattice; then only a BEND about the same axis may follow. Its distances are bounded on ever
+    shorter intervals of time. What 40 halvings or 10,000 intervals do not settle is refused as
+    undecided: a distance that all but equals the diameter, or bars that turn many times over.
 
     Raises
     ------
@@ -83,6 +89,8 @@ class _Trial:
         self.clearance = 1.0 if len(self.pose) > 3 else float("inf")
         self.bend_deg = 0.0
         self.was_straight = False
+        self.lying: _bends.Lying | None = None  # the pose, while it is off the lattice
+        self.tally = np.array([diameter, 1.0, 1.0])  # of the bends, see `_approach.approach`
         self.checked = 0
 
     def verdict(self) -> Certificate:
@@ -124,14 +132,22 @@ class _Trial:
     def _moves(self) -> Certificate | None:
         moves = self.motion.moves.astype(np.int64)
         while self.checked < len(moves):
-            tilts = moves[self.checked, 0] == Move.TILT
-            refused = self._tilt() if tilts else self._turns(moves)
+            if self.lying is not None and moves[self.checked, 0] != Move.BEND:
+                fault = f"malformed: {_named(moves[self.checked])} starts off the lattice"
+                return self._refuse(fault, self.checked)
+            match moves[self.checked, 0]:
+                case Move.TILT:
+                    refused = self._tilt()
+                case Move.BEND:
+                    refused = self._bend()
+                case _:
+                    refused = self._turns(moves)
             if refused:
                 return refused
         return None
 
     def _turns(self, moves: NDArray[np.int64]) -> Certificate | None:
-        """Peels, swings and doors up to the next tilt."""
+        """Peels, swings and doors up to the next move of another kind."""
         where, fault, clearance, bend_deg, straight, a, b = _sweeps.carry_out(
             self.pose, moves, self.checked, self.diameter, self.max_bend_deg
         )
@@ -184,7 +200,35 @@ class _Trial:
         self.was_straight = self.was_straight or bend_deg == 0
         return None
 
+    def _bend(self) -> Certificate | None:
+        where, move = self.checked, self.motion.moves[self.checked]
+        self.checked += 1
+        _, axis, first, last = (int(x) for x in move)
+        now = _bends.lying(self.pose, axis) if self.lying is None else self.lying
+        fault = _bends.malformed_bend(self.motion, move, now)
+        if fault:
+            return self._refuse(f"malformed: {_named(move)} {fault}", where)
+        before, after = (now.at(self.motion.angles[row]) for row in (first, last))
+        bends_deg = _bends.sharpest_bends(before, after)
+        self.bend_deg = max(self.bend_deg, float(bends_deg.max()))
+        if bends_deg.max() > self.max_bend_deg:
+            joint = int(bends_deg.argmax())
+            return self._refuse(f"bend of {bends_deg[joint]:g} degrees at joint {joint}", where)
+        reason, clearance = _bends.approached(before, after, bends_deg, self.tally)
+        if len(self.pose) > 3:
+            self.clearance = min(self.clearance, clearance)
+        if reason:
+            return self._refuse(f"{reason} of {_named(move)}", where)
+        bars = after.bars()
+        self.lying = after if bars is None else None
+        if bars is not None:
+            self.pose[1:] = self.pose[0] + bars.cumsum(axis=0)
+            self.was_straight = self.was_straight or largest_bend(self.pose)[0] == 0
+        return None
+
     def _end(self) -> Certificate | None:
+        if self.lying is not None:
+            return self._refuse("the last pose is off the lattice")
         bend_deg, joint = largest_bend(self.pose)
         straight = bend_deg == 0
         if straight != self.motion.straight:
