@@ -199,6 +199,8 @@ class Certificate:
     bend_deg : float
         Largest bend between consecutive bars anywhere in the motion; nan for a path.
     moves_checked : int
+    violations : int
+        Moves that slotted joints do not let the chain make; 0 where they were not asked about.
     """
 
     ok: bool
@@ -209,6 +211,7 @@ class Certificate:
     max_bend_deg: float = float("nan")
     bend_deg: float = float("nan")
     moves_checked: int = 0
+    violations: int = 0
 
 
 @dataclass(frozen=True, eq=False)

@@ -288,6 +288,7 @@ class _Certificate(_Document):
     max_bend_deg: Number
     bend_deg: Number
     moves_checked: Whole
+    violations: Whole = 0
 
     @classmethod
     def of(cls, certificate: Certificate) -> _Certificate:

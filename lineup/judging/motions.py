@@ -1,9 +1,12 @@
 """The judge of motions: whether the chain keeps clear of itself at every instant (Section 6)."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import grid
+from ..joints import JOINTS, slot_violations
 from ..kinematics import Move
 from ..solid import Certificate, Motion
 from . import _bends, _sweeps
@@ -18,7 +21,9 @@ _MALFORMED = {
 }
 
 
-def certify(motion: Motion, diameter: float = 0.999, max_bend_deg: float = 90.0) -> Certificate:
+def certify(
+    motion: Motion, diameter: float = 0.999, max_bend_deg: float = 90.0, joints: str = "free"
+) -> Certificate:
     """Judge a whole motion, at every instant, from its start to its last pose (Section 6).
 
     Bars two or more apart must keep `diameter` from each other (as centre lines of capsules),
@@ -34,6 +39,9 @@ def certify(motion: Motion, diameter: float = 0.999, max_bend_deg: float = 90.0)
         In voxel units. The default is that of touching blocks less a numerical tolerance.
     max_bend_deg : float
         Between 0 (exclusive) and 180.
+    joints : str
+        "free", or "slotted" to ask as well that no capsule twists between two bent joints, which
+        the slots of the printed block do not let it (Figure 16, see `lineup.joints`).
 
     Returns
     -------
@@ -61,7 +69,8 @@ def certify(motion: Motion, diameter: float = 0.999, max_bend_deg: float = 90.0)
     Raises
     ------
     ValueError
-        If `diameter` is not positive or `max_bend_deg` is not in (0, 180].
+        If `diameter` is not positive, `max_bend_deg` is not in (0, 180], or `joints` is none of
+        those.
 
     Examples
     --------
@@ -76,7 +85,25 @@ def certify(motion: Motion, diameter: float = 0.999, max_bend_deg: float = 90.0)
         raise ValueError(f"diameter must be a positive number of voxels, got {diameter}")
     if not 0 < max_bend_deg <= 180:
         raise ValueError(f"max_bend_deg must be above 0 and at most 180, got {max_bend_deg}")
-    return _Trial(motion, diameter, max_bend_deg).verdict()
+    if joints not in JOINTS:
+        raise ValueError(f"unknown joints {joints!r}; known: {', '.join(JOINTS)}")
+    verdict = _Trial(motion, diameter, max_bend_deg).verdict()
+    return verdict if joints == "free" else _slotted(motion, verdict)
+
+
+def _slotted(motion: Motion, verdict: Certificate) -> Certificate:
+    """The verdict, and what the slots say of the moves that it covers."""
+    if len(motion.start) % 2:
+        reason = f"start: {len(motion.start)} joints are no chain of blocks, which have two each"
+        return replace(verdict, ok=False, reason=reason, where=-1)
+    n_made = verdict.where if verdict.where >= 0 else verdict.moves_checked
+    rows = slot_violations(replace(motion, moves=motion.moves[:n_made]))
+    verdict = replace(verdict, violations=len(np.unique(rows[:, 0])))
+    if not (verdict.ok and len(rows)):
+        return verdict
+    where, bar = (int(x) for x in rows[0])
+    reason = f"bar {bar} would twist in its slots, bent at both ends"
+    return replace(verdict, ok=False, reason=reason, where=where)
 
 
 class _Trial:
