@@ -208,7 +208,10 @@ class Certificate:
     extent : (float, float, float)
         Sides, in voxel units and along the motion's own axes, of the smallest box that holds all
         blocks over the whole motion, the blocks unturned: that of the bars' centre lines, and 1
-        more. Up to rounding it is exact for PEEL, SWING, DOOR and TILT; nan for a path.
+        more. Up to rounding it is exact, but an upper bound where there are BENDs; nan for a
+        path.
+    violations : int
+        Moves that slotted joints do not let the chain make; 0 where they were not asked about.
     """
 
     ok: bool
@@ -222,6 +225,7 @@ class Certificate:
     nearest: tuple[int, int, int] = (-1, -1, -1)
     most_bent: tuple[int, int] = (-1, -1)
     extent: tuple[float, float, float] = (float("nan"), float("nan"), float("nan"))
+    violations: int = 0
 
 
 @dataclass(frozen=True, eq=False)

@@ -291,6 +291,7 @@ class _Certificate(_Document):
     nearest: tuple[Whole, Whole, Whole] = (-1, -1, -1)
     most_bent: tuple[Whole, Whole] = (-1, -1)
     extent: tuple[Number, Number, Number] = (None, None, None)
+    violations: Whole = 0
 
     @classmethod
     def of(cls, certificate: Certificate) -> _Certificate:

@@ -24,6 +24,7 @@ ORDER = [
         "grid",
         "solid",
         "kinematics",
+        "joints",
         "notation",
         "judging",
     ),

@@ -48,7 +48,7 @@ def compare(moving: Ints, resting: Ints, turning: bool, nearest: Nearest) -> Non
 @kernel
 def meet(m: Ints, r: Ints, turning: bool, nearest: Nearest) -> None:
     """Take note of how near run m comes to run r while it turns by a quarter, or slides."""
-    if m[HLO] > r[HHI] or r[HLO] > m[HHI]:
+    if not _share_a_height(m, r):
         return
     if m[FIRST] - r[LAST] < 2 and r[FIRST] - m[LAST] < 2:
         return
@@ -61,6 +61,11 @@ def meet(m: Ints, r: Ints, turning: bool, nearest: Nearest) -> None:
 
 
 @kernel
+def _share_a_height(m: Ints, r: Ints) -> bool:
+    return m[HLO] <= r[HHI] and r[HLO] <= m[HHI]
+
+
+@kernel
 def nearest_bars(nearest: Nearest) -> tuple[int, int]:
     """The two bars, in the nearest two runs, that come as near as that; the lower one first."""
     m, r = nearest.runs[0].copy(), nearest.runs[1].copy()
@@ -68,12 +73,12 @@ def nearest_bars(nearest: Nearest) -> tuple[int, int]:
     one = m.copy()
     for bar in range(m[FIRST], m[LAST] + 1):
         _narrow(m, bar, one)
-        if _distance(one, r, turning) <= enough:
+        if _share_a_height(one, r) and _distance(one, r, turning) <= enough:
             break
     m[:] = one
     for bar in range(r[FIRST], r[LAST] + 1):
         _narrow(r, bar, one)
-        if _distance(m, one, turning) <= enough:
+        if _share_a_height(m, one) and _distance(m, one, turning) <= enough:
             break
     return min(m[FIRST], one[FIRST]), max(m[FIRST], one[FIRST])
 

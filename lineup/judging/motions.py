@@ -1,12 +1,15 @@
 """The judge of motions: whether the chain keeps clear of itself at every instant (Section 6)."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import grid
+from ..joints import JOINTS, slot_violations
 from ..kinematics import Move
 from ..solid import Certificate, Motion
-from . import _pulls, _turns
+from . import _bends, _pulls, _turns
 from ._lattice import congruent, largest_bend, not_simple
 from ._tilts import malformed_tilt, not_monotone, tilt_box
 
@@ -26,6 +29,7 @@ def certify(
     diameter: float = 0.999,
     max_bend_deg: float = 90.0,
     within: tuple[float, float, float] | None = None,
+    joints: str = "free",
 ) -> Certificate:
     """Judge a whole motion, at every instant, from its start to its last pose (Section 6).
 
@@ -45,15 +49,18 @@ def certify(
     within : (float, float, float), optional
         Sides, in voxel units and along the axes of `motion`, of a box that all blocks have to
         stay in, wherever it is put: no side of the certificate's `extent` may be longer.
+    joints : str
+        "free", or "slotted" to ask as well that no capsule twists between two bent joints, which
+        the slots of the printed block do not let it (Figure 16, see `lineup.joints`).
 
     Returns
     -------
     Certificate
         `clearance` is the smallest distance over the motion within 1e-9, but TILT and PULL count by
-        lower bounds; a chain of less than three bars has infinite clearance. `where` is the first
-        move that fails, -1 where the fault is in the start or the end. After a fault,
-        `clearance`, `bend_deg` and `extent` cover the moves up to it, and that move as far as
-        it was judged.
+        lower bounds, and a BEND by one that is at most 1e-4 too low; a chain of less than three
+        bars has infinite clearance. `where` is the first move that fails, -1 where the fault is
+        in the start or the end. After a fault, `clearance`, `bend_deg` and `extent` cover the
+        moves up to it, and that move as far as it was judged.
 
     Notes
     -----
@@ -67,11 +74,16 @@ def certify(
     lie in a straight line; .9142, with bends of 90 degrees at most, if they make corners but no
     U (three edges of a unit square in a row); sqrt(3)/2 and 120 degrees if they do.
 
+    A BEND must begin in the pose that is, angles counted modulo a full turn, and may end off the
+    lattice; then only a BEND about the same axis may follow. Its distances are bounded on ever
+    shorter intervals of time. What 40 halvings or 10,000 intervals do not settle is refused as
+    undecided: a distance that all but equals the diameter, or bars that turn many times over.
+
     Raises
     ------
     ValueError
-        If `diameter` is not positive, `max_bend_deg` is not in (0, 180], or `within` is not
-        three positive numbers.
+        If `diameter` is not positive, `max_bend_deg` is not in (0, 180], `within` is not three
+        positive numbers, or `joints` is none of those.
 
     Examples
     --------
@@ -90,7 +102,25 @@ def certify(
     box = np.array([np.inf] * 3 if within is None else within, np.float64)
     if box.shape != (3,) or not (box > 0).all():
         raise ValueError(f"within must be three positive numbers of voxels, got {within}")
-    return _Trial(motion, diameter, max_bend_deg, box).verdict()
+    if joints not in JOINTS:
+        raise ValueError(f"unknown joints {joints!r}; known: {', '.join(JOINTS)}")
+    verdict = _Trial(motion, diameter, max_bend_deg, box).verdict()
+    return verdict if joints == "free" else _slotted(motion, verdict)
+
+
+def _slotted(motion: Motion, verdict: Certificate) -> Certificate:
+    """The verdict, and what the slots say of the moves that it covers."""
+    if len(motion.start) % 2:
+        reason = f"start: {len(motion.start)} joints are no chain of blocks, which have two each"
+        return replace(verdict, ok=False, reason=reason, where=-1)
+    n_made = verdict.where if verdict.where >= 0 else verdict.moves_checked
+    rows = slot_violations(replace(motion, moves=motion.moves[:n_made]))
+    verdict = replace(verdict, violations=len(np.unique(rows[:, 0])))
+    if not (verdict.ok and len(rows)):
+        return verdict
+    where, bar = (int(x) for x in rows[0])
+    reason = f"bar {bar} would twist in its slots, bent at both ends"
+    return replace(verdict, ok=False, reason=reason, where=where)
 
 
 class _Trial:
@@ -106,6 +136,8 @@ class _Trial:
         self.bend_deg, self.most_bent = 0.0, (-1, -1)
         self.box = np.full((2, 3), np.nan)  # lowest and highest positions met
         self.was_straight = False
+        self.lying: _bends.Lying | None = None  # the pose, while it is off the lattice
+        self.tally = np.array([diameter, 1.0, 1.0])  # of the bends, see `_approach.approach`
         self.checked = 0
 
     def verdict(self) -> Certificate:
@@ -176,10 +208,12 @@ class _Trial:
 
     def _moves(self) -> Certificate | None:
         judges = dict.fromkeys(_turns.KINDS, self._turns)
-        judges |= {Move.TILT: self._tilt, Move.PULL: self._pulls}
+        judges |= {Move.TILT: self._tilt, Move.PULL: self._pulls, Move.BEND: self._bend}
         while self.checked < len(self.motion):
             where = self.checked
             move = self.motion.moves[where]
+            if self.lying is not None and move[0] != Move.BEND:
+                return self._refuse(f"malformed: {_named(move)} starts off the lattice", where)
             if move[0] not in judges:
                 self.checked += 1
                 return self._refuse(f"malformed: {_named(move)} is of no known kind", where)
@@ -284,7 +318,36 @@ class _Trial:
         self.was_straight = self.was_straight or bend_deg == 0
         return None
 
+    def _bend(self) -> Certificate | None:
+        where, move = self.checked, self.motion.moves[self.checked]
+        self.checked += 1
+        _, axis, first, last = (int(x) for x in move)
+        now = _bends.lying(self.pose, axis) if self.lying is None else self.lying
+        fault = _bends.malformed_bend(self.motion, move, now)
+        if fault:
+            return self._refuse(f"malformed: {_named(move)} {fault}", where)
+        before, after = (now.at(self.motion.angles[row]) for row in (first, last))
+        bends_deg = _bends.sharpest_bends(before, after)
+        joint = int(bends_deg.argmax())
+        self._note_bend(float(bends_deg[joint]), where, joint)
+        if bends_deg[joint] > self.max_bend_deg:
+            return self._refuse(f"bend of {bends_deg[joint]:g} degrees at joint {joint}", where)
+        reason, clearance = _bends.approached(before, after, bends_deg, self.tally)
+        if clearance < self.clearance and len(self.pose) > 3:
+            self.clearance, self.nearest = clearance, (where, -1, -1)
+        if reason:
+            return self._refuse(f"{reason} of {_named(move)}", where)
+        self._widen(self.pose[0] + _bends.reach(before, after))
+        bars = after.bars()
+        self.lying = after if bars is None else None
+        if bars is not None:
+            self.pose[1:] = self.pose[0] + bars.cumsum(axis=0)
+            self.was_straight = self.was_straight or largest_bend(self.pose)[0] == 0
+        return None
+
     def _end(self) -> Certificate | None:
+        if self.lying is not None:
+            return self._refuse("the last pose is off the lattice")
         bend_deg, joint = largest_bend(self.pose)
         straight = bend_deg == 0
         if straight != self.motion.straight:
