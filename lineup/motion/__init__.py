@@ -6,7 +6,9 @@ from typing import Any
 from .._options import checked
 from ..solid import Motion, VoxelPath
 from .accordion import accordion
+from .algorithm4 import energy
 from .peel import peel
+from .thick import barrier
 
 
 def unfold(path: VoxelPath, method: str = "auto", seed: int = 0, **options: Any) -> Motion:
@@ -54,6 +56,8 @@ def _auto(path: VoxelPath, seed: int, *, tries: int = 12, patience: int = 20_000
 MOTION_METHODS: dict[str, Callable[..., Motion]] = {
     "accordion": accordion,
     "peel": peel,
+    "energy": energy,
+    "barrier": barrier,
     "auto": _auto,
 }
 """The planners of a motion by name: functions of a path, a seed and keyword-only options."""
