@@ -6,8 +6,10 @@ from typing import Any
 from .._options import checked
 from ..solid import Motion, VoxelPath
 from .accordion import accordion
+from .algorithm4 import energy
 from .peel import peel
 from .pulling import pull
+from .thick import barrier
 
 
 def unfold(path: VoxelPath, method: str = "auto", seed: int = 0, **options: Any) -> Motion:
@@ -58,6 +60,8 @@ MOTION_METHODS: dict[str, Callable[..., Motion]] = {
     "accordion": accordion,
     "peel": peel,
     "pull": pull,
+    "energy": energy,
+    "barrier": barrier,
     "auto": _auto,
 }
 """The planners of a motion by name: functions of a path, a seed and keyword-only options."""
