@@ -60,7 +60,7 @@ def plans(draw, max_bars=12):
     return voxels, states_of(unfolding).tolist()
 
 
-# Lemma 6: infinite rods, locality ------------------------------------------------------------------
+# Lemma 6: infinite rods, locality -----------------------------------------------------------------
 
 
 @given(plans())
@@ -183,12 +183,12 @@ def test_with_rods_as_long_as_they_are_a_change_elsewhere_breaks_a_later_move():
     assert keeps_clear(motion(short, peels))
     longer = np.insert(short, 8, [(1, -1, 0), (2, -1, 0)], axis=0)
     first = [(Move.PEEL, b, b + 1, UP) for b in (9, 8)]
-    assert keeps_clear(motion(longer, first + peels[:0] + [(Move.PEEL, 7, 8, UP)]))
+    assert keeps_clear(motion(longer, [*first, (Move.PEEL, 7, 8, UP)]))
     everything = [*first, (Move.PEEL, 7, 8, UP), (Move.PEEL, 6, 7, UP)]
     assert least_clearance(motion(longer, everything)) < EXACT
 
 
-# Lemma 7: end game -----------------------------------------------------------------------------------
+# Lemma 7: end game --------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("lengths", list(itertools.product((0, 1, 3), repeat=2)))
@@ -200,7 +200,7 @@ def test_the_last_bar_is_lined_up_by_two_free_swings_at_most(lengths):
             np.outer(np.arange(1, n + 1), grid.DIRECTIONS[d])
             for n, d in zip(lengths, (da, db), strict=True)
         )
-        voxels = np.vstack([rod_a[::-1], [(0, 0, 0), (1, 0, 0)], rod_b + (1, 0, 0)])
+        voxels = np.vstack([rod_a[::-1], [(0, 0, 0), (1, 0, 0)], np.array([1, 0, 0]) + rod_b])
         a = lengths[0]
         last = motion_of(voxels, np.array([(a, a + 1, da, db)]))
         assert len(last) == (a > 0 and da != WEST) + (lengths[1] > 0 and db != EAST)
@@ -208,7 +208,7 @@ def test_the_last_bar_is_lined_up_by_two_free_swings_at_most(lengths):
         assert pose_bend_deg(list(lu.frames(last))[-1]) == 0
 
 
-# Lemma 8: reversal, and A -> line -> B ---------------------------------------------------------------
+# Lemma 8: reversal, and A -> line -> B ------------------------------------------------------------
 
 
 def backwards(pose, after, row, n_poses):
@@ -356,7 +356,7 @@ def test_two_unfoldings_joined_at_the_line_lead_from_one_shape_to_the_other(a, b
     assert lu.certify(joined).reason == "certified"
 
 
-# Lemma 9: parity -------------------------------------------------------------------------------------
+# Lemma 9: parity ----------------------------------------------------------------------------------
 
 
 @given(paths())
