@@ -38,6 +38,7 @@ _HOME = {
     "FOLD_METHODS": "folding",
     "trim": "trimming",
     "TRIM_METHODS": "trimming",
+    "transform": "transformation",
     "save": "storage",
     "load": "storage",
     "lineup": "pipeline",

@@ -17,7 +17,7 @@ import typer
 if TYPE_CHECKING:
     import pandas as pd
 
-    from .solid import Certificate, VoxelSolid
+    from .solid import Certificate, Folding, Motion, VoxelSolid
 
 app = typer.Typer(
     help="LineUp: fold one chain of blocks into many shapes, and prove that it unfolds.",
@@ -167,8 +167,8 @@ def run_models(
     """Fold one chain into models or meshes of your own."""
     from . import tables
     from ._progress import Reporter
-    from .pipeline import lineup
-    from .storage import save
+    from .pipeline import lineup, transformations
+    from .storage import save, write_whole
 
     names = [Path(_readable(source)).stem for source in models]
     console = _console()
@@ -179,8 +179,44 @@ def run_models(
     tables.write_table(table, out, "table")
     _draw_chains(table, [out / f"{name}.folding.json" for name in names], out, "chains")
     console.print(tables.terminal_table(table))
+    shortfalls = _shortfalls(table)
+    if len(design.foldings) > 1:
+        pairs = transformations(design, out / "transformations")
+        write_whole(out / "transformations.csv", pairs.to_csv(index=False))
+        typer.echo(f"from shape to shape: {pairs['certified'].sum()} of {len(pairs)} certified")
+        bad = pairs[~pairs["certified"]].to_dict("records")
+        shortfalls += [f"{row['from']} to {row['to']}: {row['reason']}" for row in bad]
     typer.echo(f"written: {out}")
-    _end(_shortfalls(table))
+    _end(shortfalls)
+
+
+@app.command()
+def transform(
+    first: Annotated[Path, typer.Argument(metavar="A", help="A stored folding or motion.")],
+    second: Annotated[Path, typer.Argument(metavar="B", help="Another one of the same chain.")],
+    within: Annotated[
+        tuple[int, int, int] | None, typer.Option(help="Box to stay in, X Y Z in pitches.")
+    ] = None,
+    seed: Seed = 0,
+    out: Out = Path("."),
+) -> None:
+    """Write the motion from one shape to another: A-to-B.motion.json."""
+    from . import transformation
+    from .judging import certify
+    from .storage import save
+    from .verification import stored_name
+
+    found = transformation.transform(_moving(first), _moving(second), within=within, seed=seed)
+    if found.reason != transformation.DONE:
+        _end([found.reason])
+    verdict = certify(found, found.diameter, found.max_bend_deg, within=within)
+    out.mkdir(parents=True, exist_ok=True)
+    name = f"{stored_name(first)}-to-{stored_name(second)}"
+    written = save(found, out / f"{name}.motion.json")
+    box = " x ".join(f"{side:.0f}" for side in verdict.extent)
+    typer.echo(f"{len(found)} moves in a box of {box} pitches, {_told(verdict)}")
+    typer.echo(f"written: {written}")
+    _end([] if verdict.ok else [_told(verdict)])
 
 
 @app.command()
@@ -289,6 +325,16 @@ def unfold(
     typer.echo(f"{len(found)} moves, {_told(verdict)}")
     typer.echo(f"written: {written}")
     _end([] if verdict.ok else [f"{name}: {found.reason}"])
+
+
+def _moving(file: Path) -> Folding | Motion:
+    from .solid import Folding, Motion
+    from .storage import load
+
+    stored = load(file)
+    if not isinstance(stored, (Folding, Motion)):
+        raise ValueError(f"{file} holds a {type(stored).__name__}, and a folding is needed")
+    return stored
 
 
 def _known(source: str) -> str:

@@ -41,14 +41,14 @@ def contraction_pairs(path: VoxelPath, keep: BoolArray) -> IntArray:
     >>> contraction_pairs(path, keep=np.zeros((2, 2, 1), bool)).tolist()
     [[0, 3]]
     """
-    pairs = _adjacent_steps(path.voxels, grid.DIRECTIONS[[0, 1, 3, 4]])
+    pairs = adjacent_steps(path.voxels, grid.DIRECTIONS[[0, 1, 3, 4]])
     kept = keep[tuple(path.voxels.T)]
-    whole = (_n_between(kept, pairs) == 0) & ~_leaves_layer(path.voxels, pairs)
+    whole = (n_between(kept, pairs) == 0) & ~_leaves_layer(path.voxels, pairs)
     found: IntArray = pairs[whole]
     return found[np.lexsort(found.T[::-1])]
 
 
-def _adjacent_steps(voxels: IntArray, directions: IntArray) -> IntArray:
+def adjacent_steps(voxels: IntArray, directions: IntArray) -> IntArray:
     """All steps (i, j), j > i + 1, whose voxels are adjacent in one of `directions`; by j."""
     shape = voxels.max(axis=0) + 1
     step = np.full(shape, -1, np.int32)
@@ -63,7 +63,7 @@ def _adjacent_steps(voxels: IntArray, directions: IntArray) -> IntArray:
     return found[np.lexsort(found.T)]
 
 
-def _n_between(marked: BoolArray, pairs: IntArray) -> NDArray[np.int64]:
+def n_between(marked: BoolArray, pairs: IntArray) -> NDArray[np.int64]:
     """How many of the steps between the two of each pair are marked."""
     n_before = np.concatenate([[0], marked.cumsum()])
     n: NDArray[np.int64] = n_before[pairs[:, 1]] - n_before[pairs[:, 0] + 1]
@@ -116,11 +116,11 @@ def _least_loss(voxels: IntArray, pieces: IntArray | None, kept: BoolArray, exce
     is a pair of higher index before it.
     """
     pairs, leaves = _pairs_and_excursions(voxels, pieces, kept)
-    n_kept = _n_between(kept, pairs)
+    n_kept = n_between(kept, pairs)
     fate = np.zeros(len(voxels), np.int8)
     simple = of_index_2(pairs[~leaves & (n_kept == 0)], excess // 2)
     if 2 * len(simple) == excess:
-        fate[_between(simple)] = PAIR
+        fate[between(simple)] = PAIR
         return fate
     short = pairs[:, 1] - pairs[:, 0] - 1 <= excess
     pairs, leaves, n_kept = pairs[short], leaves[short], n_kept[short]
@@ -136,8 +136,8 @@ def _least_loss(voxels: IntArray, pieces: IntArray | None, kept: BoolArray, exce
     best = int(total.argmin())
     taken, first = subset(table, pairs, cost, int(ends[best]), int(halves[best]))
     fate[:first] = fate[ends[best] + 1 :] = END
-    fate[_between(pairs[taken & ~leaves])] = PAIR
-    fate[_between(pairs[taken & leaves])] = EXCURSION
+    fate[between(pairs[taken & ~leaves])] = PAIR
+    fate[between(pairs[taken & leaves])] = EXCURSION
     return fate
 
 
@@ -146,15 +146,15 @@ def _pairs_and_excursions(
 ) -> tuple[IntArray, BoolArray]:
     """Pairs of adjacent steps, by the second, and whether the path leaves its piece between."""
     if pieces is None:
-        pairs = _adjacent_steps(voxels, grid.DIRECTIONS)
+        pairs = adjacent_steps(voxels, grid.DIRECTIONS)
         return pairs, np.zeros(len(pairs), bool)
-    pairs = _adjacent_steps(voxels, grid.DIRECTIONS[[0, 1, 3, 4]])
+    pairs = adjacent_steps(voxels, grid.DIRECTIONS[[0, 1, 3, 4]])
     pairs = pairs[pieces[pairs[:, 0]] == pieces[pairs[:, 1]]]
     order = np.argsort(pieces, kind="stable")
     n_before = np.empty(len(voxels), np.int64)  # steps to keep before each in its own piece
     n_before[order] = kept[order].cumsum() - kept[order]
     i, j = pairs.T
-    whole = _n_between(kept, pairs) == n_before[j] - n_before[i] - kept[i]
+    whole = n_between(kept, pairs) == n_before[j] - n_before[i] - kept[i]
     return pairs[whole], _leaves_layer(voxels, pairs[whole])
 
 
@@ -164,7 +164,7 @@ def _cost(n_kept: NDArray[np.int64], n_ends: object, n_excursions: object) -> Co
     return cost
 
 
-def _between(pairs: IntArray) -> NDArray[np.int64]:
+def between(pairs: IntArray) -> NDArray[np.int64]:
     """The steps between the two of each pair."""
     steps = [np.arange(i + 1, j) for i, j in pairs.tolist()]
     return np.concatenate([np.empty(0, np.int64), *steps])
@@ -175,7 +175,7 @@ def contracted(path: VoxelPath, pairs: IntArray, which: str) -> VoxelPath:
     if not len(pairs):
         return path
     stays = np.ones(len(path), bool)
-    stays[_between(pairs)] = False
+    stays[between(pairs)] = False
     return _left(path, stays, f"{(~stays).sum()} voxels in pairs {which}")
 
 

@@ -16,6 +16,9 @@ TICK = 2 * np.pi / 2**20
 
 QUARTER = 2**18
 
+_REACH = 7
+"""Pieces of a track from the one that leads a wave on which the phase is 0 or 1 within 1e-26."""
+
 
 class Move(IntEnum):
     """What a row (kind, joint, other, value) of `Motion.moves` does.
@@ -162,31 +165,39 @@ def _pulled(pose: FloatArray, head: int, step: IntArray, t: float) -> FloatArray
     Each joint is at a phase, 0 to 1, between its old place and its new one. Joints on one straight
     piece of the track have one phase; past a corner it is g(p) = sqrt(1 - (1 - p)^2) for p before
     it, so that bars keep their length. The phase of one piece after the other, from the head on,
-    runs from 1/2 to g(1/2), where the next piece takes over.
+    runs from 1 - sqrt(1/2) to sqrt(1/2); there the piece behind has the phase 1 - sqrt(1/2) and
+    takes over. This looks the same from both ends of time and of the chain: the pull back, led by
+    the other end, shows the same poses backwards.
     """
     if head not in (0, len(pose) - 1):
         raise ValueError(f"a pull is by joint 0 or {len(pose) - 1}, got {head}")
     joints = pose if head else pose[::-1]  # the head last
-    ahead = np.vstack([joints[1:], joints[-1] + step])
-    bars = ahead - joints
-    cosine = (bars[1:] * bars[:-1]).sum(axis=1)
+    bars = np.empty_like(joints)
+    np.subtract(joints[1:], joints[:-1], out=bars[:-1])
+    bars[-1] = step
+    cosine = np.einsum("ij,ij->i", bars[1:], bars[:-1])
     if cosine.min(initial=0) < -0.5:
         raise ValueError(f"a pull by joint {head} would go straight back")
-    corner = cosine < 0.5
-    piece = np.concatenate([[0], corner.cumsum()])
-    n_pieces = int(piece[-1]) + 1
-    rise = np.sqrt(0.75) - 0.5
-    travelled = t * (1 + rise * (n_pieces - 1))
-    k = int(np.clip((travelled - 0.5) // rise, 0, n_pieces - 1))  # pieces that have gone ahead
-    phase = np.empty(n_pieces)
-    leader = n_pieces - 1 - k
-    phase[leader] = np.clip(travelled - rise * k, 0.0, 1.0)
-    for i in range(leader + 1, n_pieces):
-        phase[i] = np.sqrt(phase[i - 1] * (2 - phase[i - 1]))
-    for i in range(leader - 1, -1, -1):
-        phase[i] = phase[i + 1] ** 2 / (1 + np.sqrt(1 - phase[i + 1] ** 2))
+    piece = np.concatenate([[0], (cosine < 0.5).cumsum()])
+    phase = _wave(int(piece[-1]) + 1, t)
     moved_on: FloatArray = joints + phase[piece][:, None] * bars
     return moved_on if head else moved_on[::-1]
+
+
+def _wave(n_pieces: int, t: float) -> FloatArray:
+    """Phases of the straight pieces of a track, the head's last, after the share t of a PULL."""
+    first, last = 1 - np.sqrt(0.5), np.sqrt(0.5)
+    travelled = t * (1 + (last - first) * (n_pieces - 1))
+    k = int(np.clip((travelled - first) // (last - first), 0, n_pieces - 1))
+    leader = n_pieces - 1 - k
+    phase = np.zeros(n_pieces)
+    phase[leader:] = 1.0
+    phase[leader] = np.clip(travelled - (last - first) * k, 0.0, 1.0)
+    for i in range(leader + 1, min(leader + _REACH, n_pieces)):
+        phase[i] = np.sqrt(phase[i - 1] * (2 - phase[i - 1]))
+    for i in range(leader - 1, max(leader - _REACH, -1), -1):
+        phase[i] = phase[i + 1] ** 2 / (1 + np.sqrt(1 - phase[i + 1] ** 2))
+    return phase
 
 
 def _turned(bars: FloatArray, targets: IntArray | FloatArray, angle: float) -> FloatArray:

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import permutations
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,7 @@ from .layered import layered_paths
 from .motion.plan import DIAMETER, MAX_BEND_DEG
 from .solid import Certificate, Design, Folding, VoxelSolid
 from .storage import save
+from .transformation import DONE, transform
 from .trimming import trim
 from .voxelization import voxelize
 
@@ -145,6 +147,61 @@ def add(
     _check_settings(blocks, seed)
     (name,) = _names([model], first=len(design.table) + 1)
     return _extended(design, [_attempt(name, model, blocks, seed, None, progress)])
+
+
+def transformations(
+    design: Design,
+    folder: str | os.PathLike[str],
+    *,
+    within: tuple[int, int, int] | None = None,
+    seed: int = 0,
+    progress: Callable[[str], None] | None = None,
+) -> pd.DataFrame:
+    """Write the motion from each shape of a design to each other, ``A-to-B.motion.json``.
+
+    Parameters
+    ----------
+    folder : path
+        Made if it does not exist.
+    within : (X, Y, Z), optional
+        As in `transform`.
+    progress : function, optional
+        Told "A to B" as each begins.
+
+    Returns
+    -------
+    DataFrame
+        One row for each ordered pair: from, to, moves, certified, diameter, max_bend_deg,
+        clearance, the box (box_x, box_y, box_z) in pitches that the motion needs, reason. A pair
+        without a motion has its reason, and no file.
+    """
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    tell = progress or (lambda pair: None)
+    made = design.table.loc[design.table["failure"] == "", "model"]
+    rows = []
+    for (name, a), (other, b) in permutations(zip(made, design.foldings, strict=True), 2):
+        tell(f"{name} to {other}")
+        motion = transform(a, b, within=within, seed=seed)
+        row = {"from": name, "to": other, "moves": len(motion)}
+        if motion.reason == DONE:
+            save(motion, folder / f"{name}-to-{other}.motion.json")
+            row |= _transformation_row(certify(motion, motion.diameter, motion.max_bend_deg))
+        else:
+            row |= {"certified": False, "reason": motion.reason}
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def _transformation_row(verdict: Certificate) -> dict[str, Any]:
+    return {
+        "certified": verdict.ok,
+        "diameter": verdict.diameter,
+        "max_bend_deg": verdict.max_bend_deg,
+        "clearance": verdict.clearance,
+        **dict(zip(("box_x", "box_y", "box_z"), verdict.extent, strict=True)),
+        "reason": verdict.reason,
+    }
 
 
 def _attempt(

@@ -199,6 +199,19 @@ class Certificate:
     bend_deg : float
         Largest bend between consecutive bars anywhere in the motion; nan for a path.
     moves_checked : int
+    nearest : (int, int, int)
+        The move and two bars that come as near as `clearance` in it; move -1 is the start. All
+        -1 if there are no bars two apart, the bars -1 where only a lemma tells of them.
+    most_bent : (int, int)
+        The move and a joint that bends by `bend_deg` in it; move -1 is the start. Both -1 if no
+        joint ever bends.
+    extent : (float, float, float)
+        Sides, in voxel units and along the motion's own axes, of the smallest box that holds all
+        blocks over the whole motion, the blocks unturned: that of the bars' centre lines, and 1
+        more. Up to rounding it is exact, but an upper bound where there are BENDs; nan for a
+        path.
+    violations : int
+        Moves that slotted joints do not let the chain make; 0 where they were not asked about.
     """
 
     ok: bool
@@ -209,6 +222,10 @@ class Certificate:
     max_bend_deg: float = float("nan")
     bend_deg: float = float("nan")
     moves_checked: int = 0
+    nearest: tuple[int, int, int] = (-1, -1, -1)
+    most_bent: tuple[int, int] = (-1, -1)
+    extent: tuple[float, float, float] = (float("nan"), float("nan"), float("nan"))
+    violations: int = 0
 
 
 @dataclass(frozen=True, eq=False)

@@ -288,21 +288,28 @@ class _Certificate(_Document):
     max_bend_deg: Number
     bend_deg: Number
     moves_checked: Whole
+    nearest: tuple[Whole, Whole, Whole] = (-1, -1, -1)
+    most_bent: tuple[Whole, Whole] = (-1, -1)
+    extent: tuple[Number, Number, Number] = (None, None, None)
+    violations: Whole = 0
 
     @classmethod
     def of(cls, certificate: Certificate) -> _Certificate:
-        return cls(**plain(asdict(certificate)))
+        fields = plain(asdict(certificate))
+        places = {name: tuple(fields[name]) for name in ("nearest", "most_bent", "extent")}
+        return cls(**fields | places)
 
     def record(self) -> Certificate:
         fields = self.model_dump()
         for name in ("diameter", "clearance", "max_bend_deg", "bend_deg"):
-            fields[name] = float("nan") if fields[name] is None else float(fields[name])
+            fields[name] = _number(fields[name])
+        fields["extent"] = tuple(_number(side) for side in fields["extent"])
         return Certificate(**fields)
 
 
 class _Design(_Document):
     format: Literal["lineup-design"] = "lineup-design"
-    version: Literal[1] = 1
+    version: Literal[1, 2] = 2
     models: list[_Solid]
     foldings: list[_Folding]
     certificates: list[_Certificate]
@@ -359,6 +366,10 @@ def _document_of(header: _Header) -> type[_Solid | _Path | _Motion | _Folding | 
 def _design_file(file: str | os.PathLike[str]) -> Path:
     path = Path(file)
     return path / "design.json" if path.is_dir() else path
+
+
+def _number(value: float | str | None) -> float:
+    return float("nan") if value is None else float(value)
 
 
 def _rows(rows: Sequence[Sequence[int]], width: int) -> grid.IntArray:

@@ -90,8 +90,10 @@ def trim(
 
     A folding of peels and swings keeps a valid plan through every contraction, so fewer are
     open to it: any pair with nothing to keep between, then blocks without voxels to keep off
-    the ends, then pairs of index 2, then blocks off the ends that cost the least. Any other
-    folding is unfolded anew.
+    the ends, then pairs of index 2, then blocks off the ends that cost the least. A folding that
+    is pulled out stays one; without Us it loses voxels between pairs that make none, with nothing
+    to keep between, then blocks off the ends that cost the least. Any other folding is unfolded
+    anew.
 
     ``"paper"``: one linear scan of each path. If every path has enough disjoint pairs of index
     2, the first of them go; otherwise the least number of pairs whose indices bring the paths

@@ -39,9 +39,9 @@ def segment_distances(a0, a1, b0, b1):
     return np.where(inside, np.minimum(best, across), best)
 
 
-def pose_clearance(pose):
-    """Smallest distance of bars two or more apart, all pairs."""
-    k, m = np.triu_indices(len(pose) - 1, 2)
+def pose_clearance(pose, pairs=None):
+    """Smallest distance of bars two or more apart: all pairs, or those given as two arrays."""
+    k, m = np.triu_indices(len(pose) - 1, 2) if pairs is None else pairs
     return segment_distances(pose[k], pose[k + 1], pose[m], pose[m + 1]).min(initial=np.inf)
 
 
@@ -53,19 +53,20 @@ def pose_bend_deg(pose):
     return float(np.degrees(np.arctan2(sines, cosines)).max(initial=0.0))
 
 
-def sampled_move(motion, pose, move, samples=129):
+def sampled_move(motion, pose, move, samples=129, pairs=None):
     """Clearance and largest bend of one move by sampling, the lowest samples refined locally.
 
     The true clearance is at most the one returned, and lower only where it dips between samples.
+    That of some `pairs` of bars alone, two arrays, is found in the same way.
     """
     times = np.linspace(0, 1, samples)
     poses = [kinematics.moved(pose, move, motion, t) for t in times]
-    distances = np.array([pose_clearance(p) for p in poses])
+    distances = np.array([pose_clearance(p, pairs) for p in poses])
     lowest = distances.min()
     for k in np.argsort(distances, kind="stable")[:3]:
         bracket = (times[max(k - 1, 0)], times[min(k + 1, samples - 1)])
         found = optimize.minimize_scalar(
-            lambda t: pose_clearance(kinematics.moved(pose, move, motion, t)),
+            lambda t: pose_clearance(kinematics.moved(pose, move, motion, t), pairs),
             bounds=bracket,
             method="bounded",
             options={"xatol": 1e-10},
@@ -84,6 +85,9 @@ def reversed_motion(motion):
         elif kind == Move.TILT:
             rows.append((kind, joint, other, len(targets)))
             targets.append(grid.bar_directions(pose))
+        elif kind == Move.PULL:
+            tail_bar = pose[[abs(other - 1), other]]
+            rows.append((kind, other, joint, int(grid.bar_directions(tail_bar)[0])))
         else:
             bar = pose[[joint, other]]
             rows.append((kind, joint, other, int(grid.bar_directions(bar)[0])))
@@ -96,6 +100,12 @@ def reversed_motion(motion):
         "reversed",
         np.array(targets, np.int8).reshape(len(targets), len(poses[0]) - 1 if targets else 0),
     )
+
+
+def n_us(voxels):
+    """How often three edges of a lattice path in a row are sides of a unit square."""
+    a, b, c, d = voxels[:-3], voxels[1:-2], voxels[2:-1], voxels[3:]
+    return int((a - b + c == d).all(axis=1).sum())
 
 
 def layer_runs(voxels, occupancy):

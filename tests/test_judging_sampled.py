@@ -1,66 +1,43 @@
 """The judge's closed forms against dense sampling of the poses that `frames` shows."""
 
 import itertools
+import os
 
 import numpy as np
 import pytest
+from chains import chains, single, turns, walk
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from oracles import pose_bend_deg, pose_clearance, reversed_motion, sampled_move
-from polycubes import STEPS
+from polycubes import blob
+from scipy.spatial import cKDTree
 
 import lineup as lu
-from lineup import grid
+from lineup import grid, kinematics
 from lineup.kinematics import Move
 
 NEAR = 1e-6  # of the local refinement; the closed forms are exact
+PARTS = ["PEEL of end 0", "PEEL of end 1", "SWING of end 0", "SWING of end 1", "DOOR"]
 
 
-@st.composite
-def chains(draw, max_bars=12):
-    """A simple lattice path of 3 to `max_bars` bars, often crumpled."""
-    voxels = [(0, 0, 0)]
-    n_bars = draw(st.integers(3, max_bars))
-    for _ in range(n_bars):
-        x, y, z = voxels[-1]
-        free = [
-            (x + dx, y + dy, z + dz)
-            for dx, dy, dz in STEPS
-            if (x + dx, y + dy, z + dz) not in voxels
-        ]
-        assume(free)
-        voxels.append(draw(st.sampled_from(free)))
-    return np.array(voxels)
+def part_of(row):
+    kind, joint, other, _ = row
+    return "DOOR" if kind == Move.DOOR else f"{Move(kind).name} of end {int(other > joint)}"
 
 
-def turns(pose):
-    """Every well-formed PEEL, SWING and DOOR of a lattice pose."""
-    n = len(pose)
-    rows = []
-    for joint in range(n):
-        for other in (joint - 1, joint + 1):
-            if 0 <= other < n:
-                bar = pose[other] - pose[joint]
-                values = [d for d in range(6) if not bar[d % 3]]
-                rows += [(k, joint, other, d) for k in (Move.PEEL, Move.SWING) for d in values]
-        for other in range(joint + 2, n):
-            apart = np.abs(pose[other] - pose[joint])
-            if apart.max() == apart.sum() < other - joint:
-                rows += [(Move.DOOR, joint, other, value) for value in (1, -1)]
-    return rows
+def close_pairs(pose, reach=3.0):
+    """Bars two or more apart whose middles are at most `reach` apart, as two arrays."""
+    tree = cKDTree((pose[1:] + pose[:-1]) / 2)
+    pairs = np.sort(tree.query_pairs(reach, output_type="ndarray"), axis=1)
+    return tuple(pairs[pairs[:, 1] - pairs[:, 0] >= 2].T)
 
 
-def single(start, row, pose=()):
-    poses = np.array([pose], np.int8) if len(pose) else np.empty((0, 0), np.int8)
-    return lu.Motion(start, np.array([row], int), 1.0, 90.0, False, "one move", poses)
-
-
-@settings(max_examples=120, deadline=None)
+@pytest.mark.parametrize("part", PARTS)
+@settings(max_examples=25)
 @given(chains(), st.data())
-def test_one_turn_agrees_with_sampling(start, data):
+def test_one_turn_agrees_with_sampling(part, start, data):
     """Equal clearance and bend, so it certifies nothing that sampling refutes and no less."""
-    kind = data.draw(st.sampled_from([Move.PEEL, Move.SWING, Move.DOOR]))
-    rows = [row for row in turns(start) if row[0] == kind]
+    rows = [row for row in turns(start) if part_of(row) == part]
     assume(rows)
     trial = single(start, data.draw(st.sampled_from(rows)))
     verdict = lu.certify(trial)
@@ -135,25 +112,72 @@ def test_long_chains_agree_with_sampling(start, data):
     assert abs(lu.certify(trial).clearance - clearance) < NEAR
 
 
-def test_a_second_opinion_from_continuous_collision_detection():
+def ccd_finds_contact(poses, pairs_of, distance):
+    """Whether ipctk finds bars nearer than that, on the straight steps from pose to pose."""
+    detector = pytest.importorskip("ipctk").AdditiveCCD()
+    return any(
+        detector.edge_edge_ccd(
+            *(p[[i, i + 1, j, j + 1]][c] for p in step for c in range(4)), min_distance=distance
+        )[0]
+        for step in itertools.pairwise(poses)
+        for i, j in zip(*pairs_of(*step), strict=True)
+    )
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_a_second_opinion_from_continuous_collision_detection(part):
     """Bars that ipctk lets by at .99 (64 straight steps a move) are those the judge lets by."""
-    ipctk = pytest.importorskip("ipctk")
-    detector = ipctk.AdditiveCCD()
-    rng = np.random.default_rng(2)
-    start = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 1, 1), (1, 1, 1), (2, 1, 1)])
-    rows = turns(start)
+    start = walk("ENWUEESD")
+    all_pairs = np.triu_indices(len(start) - 1, 2)
+    rows = [row for row in turns(start) if part_of(row) == part]
     verdicts = set()
-    for k in rng.permutation(len(rows))[:24]:
+    for k in np.random.default_rng(2).permutation(len(rows))[:8]:
         trial = single(start, rows[k])
         poses = list(lu.frames(trial, substeps=64))
-        pairs = np.stack(np.triu_indices(len(start) - 1, 2), axis=1)
-        hit = any(
-            detector.edge_edge_ccd(
-                *(p[[i, i + 1, j, j + 1]][c] for p in step for c in range(4)), min_distance=0.99
-            )[0]
-            for step in itertools.pairwise(poses)
-            for i, j in pairs
-        )
+        hit = ccd_finds_contact(poses, lambda *_: all_pairs, 0.99)
         assert hit == ("come within" in lu.certify(trial, diameter=0.99).reason)
         verdicts.add(hit)
     assert verdicts == {True, False}
+
+
+def moving_pairs(pose, after):
+    """Close pairs of which one bar moves and the other does not."""
+    i, j = close_pairs(pose)
+    moves = (np.abs(after - pose) > 1e-9).any(axis=1)
+    moves = moves[1:] | moves[:-1]
+    differ = moves[i] != moves[j]
+    return i[differ], j[differ]
+
+
+def moves_of(motion, share):
+    """Poses before some moves of a motion, spread over it, and the moves."""
+    pose = motion.start.astype(float)
+    for k, move in enumerate(motion.moves):
+        if k % max(1, len(motion) // share) == 0:
+            yield pose, move
+        pose = np.rint(kinematics.moved(pose, move, motion, 1.0))
+
+
+def check_by_sampling(motion, share):
+    """A few of its moves, bars that are close all sampled, and by ipctk where they move."""
+    verdict = lu.certify(motion)
+    assert verdict.where == -1
+    times = np.linspace(0, 1, 65)
+    for pose, move in moves_of(motion, share):
+        poses = [kinematics.moved(pose, move, motion, t) for t in times]
+        assert min(pose_clearance(p, close_pairs(p)) for p in poses) >= verdict.clearance - 1e-9
+        assert max(pose_bend_deg(p) for p in poses) <= verdict.bend_deg + NEAR
+        assert not ccd_finds_contact(poses, moving_pairs, 0.98)
+
+
+def test_growth_keeps_its_certificate_by_sampling():
+    motion = lu.fold(lu.VoxelSolid(blob(3, side=7))).motion
+    check_by_sampling(motion, 4)
+    check_by_sampling(reversed_motion(motion), 2)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif("LINEUP_MODELS" not in os.environ, reason="needs meshes in LINEUP_MODELS")
+@pytest.mark.parametrize("name", ["bunny", "decocube"])
+def test_growth_of_meshes_keeps_its_certificate_by_sampling(name):
+    check_by_sampling(lu.fold(lu.model(name, voxels=1600)).motion, 25)

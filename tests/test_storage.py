@@ -99,7 +99,12 @@ def a_design():
     path = lu.VoxelPath(SQUARE)
     motion = lu.Motion(SQUARE, np.empty((0, 4), np.int32), 0.999, 90.0, False, "stuck")
     solid = lu.VoxelSolid(np.ones((2, 2, 1), bool), name="square")
-    verdict = lu.Certificate(False, "not straight", 3, 0.999, float("inf"), 90.0, float("nan"), 2)
+    verdict = lu.Certificate(
+        *(False, "not straight", 3, 0.999, float("inf"), 90.0, float("nan"), 2),
+        nearest=(-1, 0, 2),
+        most_bent=(1, 2),
+        extent=(2.0, 2.0 + 2**0.5, float("nan")),
+    )
     table = pd.DataFrame({"model": ["square"], "IoU": [0.5], "ok": [False], "seconds_fold": [1.5]})
     return lu.Design((solid,), (lu.Folding(path, motion),), (verdict,), table)
 
@@ -111,6 +116,19 @@ def test_design_round_trip_leaves_out_timings(tmp_path):
     assert same(design.certificates, stored.certificates)
     (tmp_path / "obj.json").unlink()
     round_trip(stored, tmp_path)
+
+
+def test_designs_of_version_1_are_read(tmp_path):
+    """Their certificates do not say where the chain comes near, bends, and how far it reaches."""
+    file = lu.save(a_design(), tmp_path / "old.json")
+    fields = json.loads(file.read_text()) | {"version": 1}
+    for name in ("nearest", "most_bent", "extent"):
+        del fields["certificates"][0][name]
+    file.write_text(json.dumps(fields))
+    (verdict,) = lu.load(file).certificates
+    assert (verdict.nearest, verdict.most_bent) == ((-1, -1, -1), (-1, -1))
+    assert np.isnan(verdict.extent).all()
+    assert (verdict.ok, verdict.where, verdict.bend_deg != verdict.bend_deg) == (False, 3, True)
 
 
 def test_a_design_says_of_failed_models_why(tmp_path):

@@ -3,6 +3,7 @@
 Each function returns a matplotlib figure; `save` writes it.
 """
 
+from .animation import animation
 from .decomposition import decomposition
 from .files import save
 from .moments import unfolding
@@ -11,6 +12,7 @@ from .regions import checkerboard, contraction, merge, planar_steps
 from .scenes import chain, contact_sheet, layering, solid
 
 __all__ = [
+    "animation",
     "chain",
     "checkerboard",
     "contact_sheet",

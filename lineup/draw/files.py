@@ -1,6 +1,8 @@
 """Figures as files."""
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -27,14 +29,21 @@ def save(figure: Figure, file: str | os.PathLike[str]) -> Path:
     ...     draw.save(Figure(), f"{folder}/empty.png").name
     'empty.png'
     """
+    with whole(file, ".png") as half:
+        figure.savefig(half, format="png", metadata={"Software": None})
+    return Path(file)
+
+
+@contextmanager
+def whole(file: str | os.PathLike[str], ending: str) -> Iterator[Path]:
+    """Where to write a file that takes its place only once it is whole; folders are made."""
     path = Path(file)
-    if path.suffix.lower() != ".png":
-        raise ValueError(f"a picture is written as .png, got {path.name!r}")
+    if path.suffix.lower() != ending:
+        raise ValueError(f"a picture of this kind is written as {ending}, got {path.name!r}")
     path.parent.mkdir(parents=True, exist_ok=True)
     half = path.with_name(f"{path.name}.{os.getpid()}.tmp")
     try:
-        figure.savefig(half, format="png", metadata={"Software": None})
+        yield half
         os.replace(half, path)
     finally:
         half.unlink(missing_ok=True)
-    return path

@@ -15,7 +15,7 @@ from .bodies import chain_body
 from .page import GREY, INK, PALE, page, picture
 from .view import View, colours, view_of
 
-_PANEL = (5.2, 4.3)  # inches
+PANEL = (5.2, 4.3)  # inches
 
 
 def unfolding(folding: Folding | Motion, moments: int = 6) -> Figure:
@@ -47,16 +47,17 @@ def unfolding(folding: Folding | Motion, moments: int = 6) -> Figure:
     poses = {k: pose for k, pose in enumerate(frames(motion)) if k in wanted}
     columns = min(3, moments)
     rows = -(-moments // columns)
-    figure = page(_PANEL[0] * columns, _PANEL[1] * rows)
+    figure = page(PANEL[0] * columns, PANEL[1] * rows)
     panels = figure.subfigures(rows, columns, squeeze=False).ravel()
     view = view_of(motion.start).widened(0.8)
     for panel, move in zip(panels, when, strict=False):
-        title, where = _moment(motion, move, poses[move])
-        _panel(panel, poses[move], view, title, where)
+        title, where = told(motion, move, poses[move])
+        moment_panel(panel, poses[move], view, title, where)
     return figure
 
 
-def _moment(motion: Motion, move: int, pose: FloatArray) -> tuple[str, str]:
+def told(motion: Motion, move: int, pose: FloatArray) -> tuple[str, str]:
+    """What to say of the pose after so many moves: how far it is unfolded, and where that is."""
     if move == 0:
         return "folded", f"before the first of {len(motion):,} moves"
     left = bends(pose) / max(bends(motion.start), 1)
@@ -76,9 +77,9 @@ def bends(pose: ArrayLike) -> int:
     return int((np.abs(turns) > 1e-6).any(axis=1).sum())
 
 
-def _panel(panel: FigureBase, pose: FloatArray, view: View, title: str, where: str) -> None:
+def moment_panel(panel: FigureBase, pose: FloatArray, view: View, title: str, where: str) -> None:
     """One moment: the camera's picture, and the whole chain in a column to the right of it."""
-    width, height = _PANEL
+    width, height = PANEL
     side = 3.6
     axes = picture(
         panel,

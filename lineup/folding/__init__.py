@@ -10,6 +10,7 @@ from ..layered import layered_path
 from ..motion import unfold
 from ..solid import Folding, VoxelSolid
 from .growing import growth
+from .pulling import pulled
 from .shorten import shortened_folding
 
 
@@ -28,7 +29,9 @@ def fold(
         A key of `FOLD_METHODS`. ``"growth"`` changes path and motion together and always ends
         straight; its options are `paths`, `trial_rounds`, `rounds` and `progress`.
         ``"layered"`` unfolds a layered path (Sections 4 and 6), which may get stuck; its option
-        is `starts`.
+        is `starts`. ``"pull"`` pulls a path of the method `path` (``"ufree"``) out by one end:
+        for thinner bars, see `Motion.diameter` and `max_bend_deg`; its other option is `sweeps`,
+        that of the path.
     length : int, optional
         Even number of voxels to trim to. A path that stays shorter is returned as it is.
     seed : int
@@ -75,5 +78,9 @@ def _layered(solid: VoxelSolid, seed: int, length: int | None, *, starts: int = 
     return Folding(path, unfold(path, seed=seed))
 
 
-FOLD_METHODS: dict[str, Callable[..., Folding]] = {"growth": growth, "layered": _layered}
+FOLD_METHODS: dict[str, Callable[..., Folding]] = {
+    "growth": growth,
+    "layered": _layered,
+    "pull": pulled,
+}
 """The planners of path and motion by name: functions of a solid, seed, length and options."""

@@ -11,17 +11,20 @@ from ..solid import Folding, VoxelPath
 from ._fold import Body, Fold, load, new_fold, path_of
 from ._fold import states_of as plan_of
 from ._moves import contract_all
+from .pulling import is_pulled, shortened_pulled
 
 
 def shortened_folding(folding: Folding, length: int, keep: BoolArray | None = None) -> Folding:
     """A folding cut down to `length` voxels; those to keep, or the surface, go if they must.
 
-    A motion of peels and swings keeps a valid plan; any other path is unfolded anew. The order in
-    which voxels go is that of `trimming.trim`.
+    A motion of peels and swings keeps a valid plan, and a chain that is pulled out still can be;
+    any other path is unfolded anew. The order in which voxels go is that of `trimming.trim`.
     """
     occupancy = occupancy_of(folding.path)
     keep = surface(occupancy) if keep is None else keep
     if not has_peel_plan(folding.motion):
+        if is_pulled(folding.motion):
+            return shortened_pulled(folding, length, keep)
         path = shortened_path(folding.path, length, keep)
         return Folding(path, unfold(path))
     grid, cells = box_grid(occupancy.shape), cells_of(folding.path.voxels, occupancy.shape)

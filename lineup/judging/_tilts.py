@@ -54,3 +54,23 @@ def _not_accordion(
     if rests_beside.any():
         return f"bar {int(np.flatnonzero(rests_beside)[0])} rests on an axis of bars that turn"
     return ""
+
+
+def tilt_box(
+    first: NDArray[np.int64],
+    bars: NDArray[np.int64],
+    targets: NDArray[np.int64],
+    turning: NDArray[np.bool_],
+) -> NDArray[np.float64]:
+    """Lowest and highest positions, (2, 3), of the joints over a tilt that leaves joint 0 at rest.
+
+    At angle a from the pose before it a joint is at r + cos(a) u + sin(a) v. Over a quarter turn
+    each coordinate is monotone, unless those of u and v have one sign: then it bulges.
+    """
+    moves = turning[:, None]
+    parts = np.where(moves, 0, bars), np.where(moves, bars, 0), np.where(moves, targets, 0)
+    r, u, v = (np.vstack([np.zeros(3), part.cumsum(axis=0)]) for part in parts)
+    bulge = np.hypot(u, v)
+    low = first + r + np.where((u < 0) & (v < 0), -bulge, np.minimum(u, v))
+    high = first + r + np.where((u > 0) & (v > 0), bulge, np.maximum(u, v))
+    return np.stack([low.min(axis=0), high.max(axis=0)])

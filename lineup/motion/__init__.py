@@ -7,6 +7,7 @@ from .._options import checked
 from ..solid import Motion, VoxelPath
 from .accordion import accordion
 from .peel import peel
+from .pulling import pull
 
 
 def unfold(path: VoxelPath, method: str = "auto", seed: int = 0, **options: Any) -> Motion:
@@ -17,7 +18,9 @@ def unfold(path: VoxelPath, method: str = "auto", seed: int = 0, **options: Any)
     method : str
         A key of `MOTION_METHODS`. ``"accordion"`` straightens a monotone path in one move;
         ``"peel"`` searches for an order in which the two ends let go of bar after bar, with
-        options `tries` and `patience`; ``"auto"`` peels where the accordion cannot.
+        options `tries` and `patience`; ``"pull"`` draws the chain out along its own track, for
+        thinner bars, see `Motion.diameter` and `max_bend_deg`; ``"auto"`` peels where the
+        accordion cannot.
     seed : int
         The same path, seed and options give the same motion.
 
@@ -54,6 +57,7 @@ def _auto(path: VoxelPath, seed: int, *, tries: int = 12, patience: int = 20_000
 MOTION_METHODS: dict[str, Callable[..., Motion]] = {
     "accordion": accordion,
     "peel": peel,
+    "pull": pull,
     "auto": _auto,
 }
 """The planners of a motion by name: functions of a path, a seed and keyword-only options."""
