@@ -318,7 +318,7 @@ def unfold(
     if not isinstance(stored, VoxelPath):
         raise ValueError(f"{file} holds a {type(stored).__name__}, and a path is needed")
     found = motion.unfold(stored, method=method, seed=seed)
-    verdict = certify(found)
+    verdict = certify(found, found.diameter, found.max_bend_deg)
     out.mkdir(parents=True, exist_ok=True)
     name = stored_name(file)
     written = save(Folding(stored, found), out / f"{name}.folding.json")

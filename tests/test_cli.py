@@ -167,6 +167,14 @@ def test_verify_judges_a_path_against_the_solid_beside_it(lineup, tmp_path):
     assert "c.path.json path: " in err
 
 
+def test_a_pulled_motion_is_judged_for_the_bars_it_needs(lineup, tmp_path):
+    lu.save(lu.VoxelSolid(np.ones((3, 2, 1), bool)), tmp_path / "c.solid.json")
+    lineup("path", "c.solid.json")
+    code, out, _ = lineup("unfold", "c.path.json", "--method", "pull")
+    assert code == 0
+    assert "certified (diameter 0.866, bends up to 120°, clearance 0.8660" in out
+
+
 def test_a_name_with_dots_keeps_them(lineup, tmp_path):
     lu.save(lu.VoxelSolid(np.ones((2, 3, 1), bool)), tmp_path / "c.v2.solid.json")
     assert lineup("path", "c.v2.solid.json")[0] == 0

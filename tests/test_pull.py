@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 from contracts import NOT_STRAIGHT
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from oracles import n_us, pose_bend_deg, pose_clearance, reversed_motion, sampled_move
@@ -15,6 +15,7 @@ from scipy import ndimage
 import lineup as lu
 from lineup import grid, kinematics
 from lineup.kinematics import Move
+from lineup.motion import pulling
 
 EAST, NORTH, UP, WEST, SOUTH, DOWN = range(6)
 U_FREE, WITH_US = (0.914, 90.0), (0.866, 120.0)
@@ -230,6 +231,83 @@ def test_a_chain_is_pulled_out_wherever_a_way_leads_out(occupancy, seed):
     if leads_out:
         check_pulled(motion)
         assert not n_us(path.voxels) or motion.max_bend_deg == 120
+
+
+def packed(rng, side):
+    """A path without a U that fills a box from both ends until they are stuck, deep inside."""
+    track = [tuple(rng.integers(0, side, 3).tolist())]
+    for _ in range(2):
+        while True:
+            beside = [tuple((track[-1] + d).tolist()) for d in grid.DIRECTIONS]
+            ahead = [
+                new
+                for new in beside
+                if new not in track
+                and min(new) >= 0
+                and max(new) < side
+                and not n_us(np.array([*track[-3:], new]))
+            ]
+            if not ahead:
+                break
+            track.append(ahead[rng.integers(len(ahead))])
+        track.reverse()
+    return np.array(track)
+
+
+def leads_out_without_a_u(track, n_turns):
+    """Whether a way of at most so many steps and then a ray continues a path, by trying all."""
+    reach = np.ptp(track, axis=0).max() + n_turns + 1
+    taken = set(map(tuple, track.tolist()))
+    for step in grid.DIRECTIONS:
+        before = track[-2] - track[-3] if len(track) > 2 else 0 * step
+        if (step == -before).all() or (step == track[-2] - track[-1]).all():
+            continue
+        ray = track[-1] + np.arange(1, reach + 1)[:, None] * step
+        if taken.isdisjoint(map(tuple, ray.tolist())):
+            return True
+        free = n_turns and tuple(ray[0].tolist()) not in taken
+        if free and leads_out_without_a_u(np.vstack([track, ray[:1]]), n_turns - 1):
+            return True
+    return False
+
+
+@settings(max_examples=60, deadline=None)
+@example(seed=34, side=3)
+@given(st.integers(0, 10**6), st.integers(3, 5))
+def test_a_way_out_of_a_packed_box_makes_a_u_only_where_it_must(seed, side):
+    voxels = packed(np.random.default_rng(seed), side)
+    assume(len(voxels) > 2)
+    motion = lu.unfold(lu.VoxelPath(voxels), "pull")
+    if motion.straight:
+        check_pulled(motion)
+    if any(leads_out_without_a_u(track, 3) for track in (voxels, voxels[::-1])):
+        assert (motion.diameter, motion.max_bend_deg) == U_FREE
+
+
+@pytest.mark.parametrize(
+    ("last", "carved", "u_free", "way"),
+    [
+        ("SS", "ENNN", True, None),
+        ("SS", "ENNN", False, "EN"),
+        ("SS", "EENNN", True, "EEN"),
+        ("EE", "ENNWN", True, "ENNWN"),
+        ("EE", "ENUNWN", True, "ENUNWN"),
+        ("SS", "EEEUUWWDDNNN", True, None),  # round a loop there is, but across itself
+        ("SE", "NWNN", True, None),
+        ("SE", "NWNN", False, "NWN"),
+    ],
+)
+def test_ways_through_a_solid_wall(last, carved, u_free, way):
+    """A tunnel to the north side of a block, from its middle; `last` are the edges that lead in."""
+    wall = np.ones((9, 7, 7), bool)
+    head = np.array([3, 3, 2])
+    wall[tuple(walk(carved, head)[1:].T)] = False
+    wall[tuple(head)] = True
+    voxels = np.argwhere(wall)
+    k = int(np.flatnonzero((voxels == head).all(axis=1))[0])
+    track = [grid.LETTERS.index(c) for c in last]
+    found = pulling._way_out(voxels, k, track, u_free=u_free)
+    assert (found and "".join(grid.LETTERS[d] for d in found)) == way
 
 
 def test_both_ends_shut_in_is_a_reason():

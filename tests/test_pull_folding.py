@@ -47,7 +47,7 @@ def test_a_path_without_us_is_pulled_out_whole_and_trimmed(occupancy, seed, data
     check_pulled(folding, solid)
     length = 2 * data.draw(st.integers(1, len(folding.path) // 2))
     (shorter,) = lu.trim([folding], length)
-    assert len(shorter.path) == length
+    assert (len(shorter.path), n_us(shorter.path.voxels)) == (length, 0)
     check_pulled(shorter, solid)
 
 
@@ -75,7 +75,10 @@ def test_trimming_keeps_the_surface_while_it_can():
     (shorter,) = lu.trim([folding], len(folding.path) - 12)
     assert kept[tuple(shorter.path.voxels.T)].sum() == before
     assert "12 voxels in pairs, 0 in excursions and 0 off the ends" in shorter.path.method
-    check_pulled(shorter, solid)
+    for length in range(len(folding.path) - 12, 40, -52):
+        (shorter,) = lu.trim([folding], length)
+        assert (len(shorter.path), n_us(shorter.path.voxels)) == (length, 0)
+        check_pulled(shorter, solid)
 
 
 def test_all_of_a_refined_solid_is_pulled_out_without_a_u():

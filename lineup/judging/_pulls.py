@@ -38,6 +38,9 @@ ROUND_US = sqrt(3) / 2
 CORNER_DEG, U_DEG = 90.0, 120.0
 """Largest bends round a corner and round a U."""
 
+AXIS_NUMBERS = np.array([1, 2, 3])
+"""Edges along x, y and z count as 1, 2 and 3, and backwards as -1, -2 and -3."""
+
 FINE, BACK, BLOCKED, TOUCH, BEND = range(5)
 """What `carry_out` found: nothing wrong, a malformed pull, or a pull that fails (three ways)."""
 
@@ -65,10 +68,9 @@ def carry_out(
     """Judge pulls by the last joint, of two or more, in the directions `steps` (M, 3)."""
     n, m = len(pose), len(steps)
     track = np.vstack([pose, pose[-1] + steps.cumsum(axis=0)])
-    edges = np.diff(track, axis=0)
-    cosine = (edges[1:] * edges[:-1]).sum(axis=1)
-    corner = cosine == 0
-    u = corner[1:] & corner[:-1] & (edges[2:] == -edges[:-2]).all(axis=1)
+    edge = np.diff(track @ AXIS_NUMBERS)
+    corner = np.abs(edge[1:]) != np.abs(edge[:-1])
+    u = corner[1:] & (edge[2:] == -edge[:-2])
     has_corner, has_u = _within(corner, n - 1, m), _within(u, n - 2, m)
     clearance, bend_deg = np.ones(m), np.zeros(m)
     clearance[has_corner], bend_deg[has_corner] = ROUND_CORNERS, CORNER_DEG
@@ -83,7 +85,7 @@ def carry_out(
     fault[bend_deg > max_bend_deg] = BEND
     fault[clearance < diameter] = TOUCH
     fault[met >= 0] = BLOCKED
-    fault[cosine[n - 2 :] < 0] = BACK
+    fault[edge[n - 1 :] == -edge[n - 2 : -1]] = BACK
     made = int(np.argmax(fault != FINE)) if fault.any() else m
     judged = slice(made + (made < m and fault[made] != BACK))
     return Pulled(
@@ -109,7 +111,10 @@ def _met(track: NDArray[np.int64], n_joints: int) -> NDArray[np.int64]:
 
     The voxel that the tail leaves with the same pull is not free yet.
     """
-    order = np.lexsort(track.T)
+    entered = track[n_joints:]
+    near = ((track >= entered.min(axis=0)) & (track <= entered.max(axis=0))).all(axis=1)
+    order = np.flatnonzero(near)
+    order = order[np.lexsort(track[order].T)]
     again = (track[order[1:]] == track[order[:-1]]).all(axis=1)
     before, after = order[:-1][again], order[1:][again]
     inside = after - before <= n_joints
