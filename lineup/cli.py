@@ -35,6 +35,10 @@ Source = Annotated[
 Out = Annotated[Path, typer.Option(help="Folder to write into; made if it does not exist.")]
 Seed = Annotated[int, typer.Option(help="Equal seeds give equal results.")]
 Blocks = Annotated[int, typer.Option(help="Blocks of the chain; each is two voxels.")]
+Box = Annotated[
+    tuple[int, int, int] | None,
+    typer.Option(help="Box that a motion from shape to shape stays in, X Y Z in pitches."),
+]
 Voxels = Annotated[int, typer.Option(help="Voxels to aim at; a stored solid keeps its own.")]
 Workers = Annotated[
     int | None, typer.Option(help="Processes at a time; as many as there are cores if not given.")
@@ -162,9 +166,13 @@ def _draw_chains(table: pd.DataFrame, files: list[Path], out: Path, name: str) -
 
 @app.command("run")
 def run_models(
-    models: Sources, blocks: Blocks = 754, out: Out = Path("out"), seed: Seed = 0
+    models: Sources,
+    blocks: Blocks = 754,
+    out: Out = Path("out"),
+    seed: Seed = 0,
+    within: Box = None,
 ) -> None:
-    """Fold one chain into models or meshes of your own."""
+    """Fold one chain into models or meshes of your own, and each of them into each other."""
     from . import tables
     from ._progress import Reporter
     from .pipeline import lineup, transformations
@@ -173,7 +181,14 @@ def run_models(
     names = [Path(_readable(source)).stem for source in models]
     console = _console()
     with Reporter(len(models), console) as reporter:
-        design = lineup(models, blocks=blocks, seed=seed, folder=out, progress=reporter)
+        design = lineup(
+            models,
+            blocks=blocks,
+            seed=seed,
+            ends=2 if within is None else 1,
+            folder=out,
+            progress=reporter,
+        )
     save(design, out)
     table = tables.table2(design.table)
     tables.write_table(table, out, "table")
@@ -181,7 +196,7 @@ def run_models(
     console.print(tables.terminal_table(table))
     shortfalls = _shortfalls(table)
     if len(design.foldings) > 1:
-        pairs = transformations(design, out / "transformations")
+        pairs = transformations(design, out / "transformations", within=within, seed=seed)
         write_whole(out / "transformations.csv", pairs.to_csv(index=False))
         typer.echo(f"from shape to shape: {pairs['certified'].sum()} of {len(pairs)} certified")
         bad = pairs[~pairs["certified"]].to_dict("records")
@@ -194,9 +209,7 @@ def run_models(
 def transform(
     first: Annotated[Path, typer.Argument(metavar="A", help="A stored folding or motion.")],
     second: Annotated[Path, typer.Argument(metavar="B", help="Another one of the same chain.")],
-    within: Annotated[
-        tuple[int, int, int] | None, typer.Option(help="Box to stay in, X Y Z in pitches.")
-    ] = None,
+    within: Box = None,
     seed: Seed = 0,
     out: Out = Path("."),
 ) -> None:

@@ -48,6 +48,7 @@ def lineup(
     blocks: int = 754,
     *,
     seed: int = 0,
+    ends: int = 2,
     folder: str | os.PathLike[str] | None = None,
     progress: Callable[[str, str], None] | None = None,
 ) -> Design:
@@ -62,6 +63,8 @@ def lineup(
         Names of the catalogue, mesh files, meshes, or solids; a VoxelSolid is taken as it is.
     blocks : int
         Number of building blocks; each is two voxels.
+    ends : int
+        How many ends of the chain may let go, see `fold`; with 1, `transform` can stay in a box.
     folder : path, optional
         Store each model as soon as it is done: ``NAME.solid.json`` and ``NAME.folding.json``. Made
         if it does not exist.
@@ -94,7 +97,7 @@ def lineup(
             raise ValueError(f"two models would be stored under one name: {listed}")
         Path(folder).mkdir(parents=True, exist_ok=True)
     attempts = [
-        _attempt(name, source, blocks, seed, folder, progress)
+        _attempt(name, source, blocks, seed, ends, folder, progress)
         for name, source in zip(names, models, strict=True)
     ]
     return _extended(Design((), (), (), pd.DataFrame()), attempts)
@@ -146,7 +149,7 @@ def add(
     blocks = lengths[0] // 2
     _check_settings(blocks, seed)
     (name,) = _names([model], first=len(design.table) + 1)
-    return _extended(design, [_attempt(name, model, blocks, seed, None, progress)])
+    return _extended(design, [_attempt(name, model, blocks, seed, 2, None, progress)])
 
 
 def transformations(
@@ -209,13 +212,14 @@ def _attempt(
     source: Source,
     blocks: int,
     seed: int,
+    ends: int,
     folder: str | os.PathLike[str] | None,
     progress: Callable[[str, str], None] | None,
 ) -> tuple[_Result | None, dict[str, Any]]:
     """What became of one model, None if it failed, and its row; stored if there is a folder."""
     tell = progress or (lambda name, stage: None)
     try:
-        result = _line_up(source, blocks, seed, partial(tell, name))
+        result = _line_up(source, blocks, seed, partial(tell, name), ends)
     except Exception as error:  # whatever is wrong with one model, the others go on
         expected = isinstance(error, ValueError | OSError)
         reason = str(error) if expected else f"{type(error).__name__}: {error}"
@@ -273,7 +277,9 @@ def _check_settings(blocks: int, seed: int) -> None:
             raise ValueError(f"{name} must be an integer of at least {least}, got {value!r}")
 
 
-def _line_up(source: Source, blocks: int, seed: int, tell: Callable[[str], None]) -> _Result:
+def _line_up(
+    source: Source, blocks: int, seed: int, tell: Callable[[str], None], ends: int = 2
+) -> _Result:
     """Voxelize, fold, trim and judge one model; more voxels again while its path is too short."""
     length = 2 * blocks
     wanted = round(length / LIKELY_COVERAGE)
@@ -284,7 +290,7 @@ def _line_up(source: Source, blocks: int, seed: int, tell: Callable[[str], None]
         with clock("layered"):
             paths = layered_paths(solid, seed)
         with clock("fold"):
-            folding = fold(solid, seed=seed, paths=paths)
+            folding = fold(solid, seed=seed, paths=paths, ends=ends)
         found = len(folding.path)
         if found >= length or isinstance(source, VoxelSolid):
             break

@@ -7,7 +7,7 @@ import numpy as np
 
 from .._options import checked
 from ..solid import Folding, VoxelSolid
-from .growth import growth
+from .growing import growth
 from .layerwise import layered_folding, paper_folding, top_ends_folding
 from .pulling import pulled
 from .shorten import shortened_folding
@@ -26,7 +26,7 @@ def fold(
     ----------
     method : str
         A key of `FOLD_METHODS`. ``"growth"`` changes path and motion together and always ends
-        straight; its options are `paths`, `trial_rounds`, `rounds` and `progress`.
+        straight; its options are `paths`, `trial_rounds`, `rounds`, `ends` and `progress`.
         ``"layered"`` unfolds a layered path (Sections 4 and 6), which may get stuck; its option
         is `starts`. So is that of ``"top_ends"``, which puts both ends of the path on top and
         pulls them upward (Section 7). ``"paper"`` is Algorithms 2 to 4 as published.

@@ -106,6 +106,7 @@ def search(
     budget: int,
     patience: int,
     bias: float,
+    only: int,
     rng: Generator,
 ) -> IntArray:
     """The plan that leaves the fewest joints folded, (K, 4) states from a start to the best met.
@@ -117,6 +118,8 @@ def search(
         Most states to enter, and most to expand without progress.
     bias : float
         Probability that end 0 peels before end 1; near 0 or 1 one end does most of the work.
+    only : int
+        The one end that may peel, -1 for both.
     """
     frontier = _open(len(chain.cell), budget)
     for k in rng.permutation(len(starts)):
@@ -139,7 +142,7 @@ def search(
             _enter_swings(grid, chain, frontier, node, rng)
         else:
             frontier.peeled[node] = 1
-            gap = _enter_peels(grid, chain, frontier, node, rng.random() < bias)
+            gap = _enter_peels(grid, chain, frontier, node, rng.random() < bias, only)
     return _trail(frontier, best)
 
 
@@ -190,14 +193,16 @@ def _slot(frontier: Frontier, state: IntArray) -> int:
 
 
 @kernel
-def _enter_peels(grid: Grid, chain: Chain, frontier: Frontier, node: int, front_first: bool) -> int:
+def _enter_peels(
+    grid: Grid, chain: Chain, frontier: Frontier, node: int, front_first: bool, only: int
+) -> int:
     """Enter the peels of a state, the preferred end on top; the bucket to look at next."""
     gap = frontier.state[node, 1] - frontier.state[node, 0]
     nearest = gap
     for turn in range(2):
         end = 1 - turn if front_first else turn
         state = frontier.state[node].copy()
-        if may_peel(grid, chain, state, end):
+        if only in (-1, end) and may_peel(grid, chain, state, end):
             state[end] += INWARD[end]
             if _enter(frontier, state, node):
                 nearest = gap - 1

@@ -15,6 +15,8 @@ DIAMETER = 0.999
 
 MAX_BEND_DEG = 90.0
 
+BOTH_ENDS = -1
+
 
 def peel_plan(
     grid: Grid,
@@ -25,13 +27,17 @@ def peel_plan(
     budget: int = 100_000,
     patience: int = 5_000,
     bias: float = 0.02,
+    only: int = BOTH_ENDS,
 ) -> IntArray:
-    """States (K, 4) of the best peel plan found for the chain through `cells`."""
+    """States (K, 4) of the best peel plan found for the chain through `cells`.
+
+    With `only` 0 or 1, no other end of the chain lets go.
+    """
     if starts is None:
         directions = np.stack(np.divmod(np.arange(36), 6), axis=1)
         starts = np.hstack([np.tile([0, len(cells) - 1], (36, 1)), directions])
     chain = link(grid, np.ascontiguousarray(cells, np.int32))
-    return search(grid, chain, starts.astype(np.int32), budget, patience, bias, rng)
+    return search(grid, chain, starts.astype(np.int32), budget, patience, bias, only, rng)
 
 
 def left_folded(states: IntArray) -> int:

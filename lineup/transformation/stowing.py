@@ -40,7 +40,7 @@ def one_ended_plans(motion: Motion, seed: int) -> list[tuple[int, IntArray]]:
     plans = [states_of(motion)] if has_peel_plan(motion) else []
     rng = np.random.default_rng(seed)
     grid, cells = path_grid(motion.start)
-    plans += [peel_plan(grid, cells, rng, bias=k % 2) for k in range(REPLANS)]
+    plans += [peel_plan(grid, cells, rng, bias=k % 2, only=1 - k % 2) for k in range(REPLANS)]
     complete = [states for states in plans if left_folded(states) == 1]
     return [
         (end, states)

@@ -13,10 +13,10 @@ from .. import grid as voxels_of
 from ..grid import IntArray
 from ..layered import layered_paths
 from ..motion._chain import Grid, box_grid, cells_of
-from ..motion.plan import left_folded, motion_of, peel_plan
+from ..motion.plan import BOTH_ENDS, left_folded, motion_of, peel_plan
 from ..solid import Folding, VoxelPath, VoxelSolid
-from ._fold import NEVER, Fold, load, new_fold
-from ._moves import Body, anneal, fill, random_shortest, worth
+from ._fold import NEVER, Body, Fold, load, new_fold, path_of, states_of
+from ._moves import anneal, fill, random_shortest
 
 SURFACE_WORTH = 1.5
 HOT, COLD = 3.0, 0.1  # worth lost with likelihood 1/e, at first and at last
@@ -33,20 +33,24 @@ def body_of(solid: VoxelSolid) -> tuple[Grid, Body]:
 
 
 def straightenable(
-    grid: Grid, cells: IntArray, rng: np.random.Generator, tries: int = 400
+    grid: Grid,
+    cells: IntArray,
+    rng: np.random.Generator,
+    only: int = BOTH_ENDS,
+    tries: int = 400,
 ) -> tuple[IntArray, IntArray]:
     """A path with a complete peel plan, got from `cells` by shortcuts where the plan gets stuck.
 
     A shortcut pays if it frees eight joints more than it costs; short ones are tried first. If
     the tries run out, only the first bar of the path is left, which is always straight.
     """
-    plans = [peel_plan(grid, cells, rng, bias=bias) for bias in 2 * BIASES]
+    plans = [peel_plan(grid, cells, rng, bias=bias, only=only) for bias in 2 * BIASES]
     states, length = min(plans, key=left_folded), 4
     for _ in range(0, tries, 4):
         left = left_folded(states)
         if left <= 1:
             return cells, states
-        cuts = [_cut(grid, cells, states, length, rng) for _ in range(4)]
+        cuts = [_cut(grid, cells, states, length, only, rng) for _ in range(4)]
         paying = [
             (path, plan)
             for path, plan in cuts
@@ -59,7 +63,12 @@ def straightenable(
 
 
 def _cut(
-    grid: Grid, cells: IntArray, states: IntArray, length: int, rng: np.random.Generator
+    grid: Grid,
+    cells: IntArray,
+    states: IntArray,
+    length: int,
+    only: int,
+    rng: np.random.Generator,
 ) -> tuple[IntArray, IntArray]:
     """Shortcut some `length` cells near one stuck end; the shorter path and a plan of it."""
     a, b = int(states[-1, 0]), int(states[-1, 1])
@@ -71,7 +80,7 @@ def _cut(
     free[cells[i : j + 1]] = True
     way = random_shortest(grid, free, cells[i], cells[j], float(rng.choice((0.01, 0.5, 2.0))), rng)
     shorter = np.concatenate([cells[:i], way, cells[j + 1 :]])
-    return shorter, peel_plan(grid, shorter, rng, patience=1000)
+    return shorter, peel_plan(grid, shorter, rng, patience=1000, only=only)
 
 
 def growth(
@@ -82,6 +91,7 @@ def growth(
     paths: Sequence[VoxelPath] | None = None,
     trial_rounds: int = 2_000,
     rounds: int = 16_000,
+    ends: int = 2,
     progress: Callable[[float], None] | None = None,
 ) -> Folding:
     """Grow a fold from each start, and the best of them for longer.
@@ -94,12 +104,18 @@ def growth(
         Start paths; layered paths by default. One start more is a single bar.
     trial_rounds, rounds : int
         Rounds of annealing for each start, and for the best of them.
+    ends : int
+        How many ends of the chain may let go; with 1 it is the last, and the motion can be made
+        within a box (`transform`).
     progress : function, optional
         Told the share of the work done, 0 to 1.
     """
     for name, value in (("trial_rounds", trial_rounds), ("rounds", rounds)):
         if value < 0:
             raise ValueError(f"{name} must not be negative, got {value}")
+    if ends not in (1, 2):
+        raise ValueError(f"ends must be 1 or 2, got {ends}")
+    only = BOTH_ENDS if ends == 2 else 1
     rng = np.random.default_rng(seed)
     grid, body = body_of(solid)
     paths = layered_paths(solid, seed) if paths is None else paths
@@ -109,25 +125,25 @@ def growth(
     work = len(starts) * trial_rounds + rounds
     best: Fold | None = None
     for k, start in enumerate(starts):
-        fold = _grown(grid, body, cells_of(start, solid.occupancy.shape), rng, target)
-        _deepen(grid, body, fold, rng, trial_rounds, target)
+        fold = _grown(grid, body, cells_of(start, solid.occupancy.shape), only, rng, target)
+        _deepen(fold, only, rng, trial_rounds, target)
         report((k + 1) * trial_rounds / max(work, 1))
-        if best is None or worth(body, fold) > worth(body, best):
+        if best is None or fold.worth[0] > best.worth[0]:
             best = fold
     assert best is not None  # the single bar is always a start
     spent = len(starts) * trial_rounds
-    _deepen(grid, body, best, rng, rounds, target, lambda done: report((spent + done) / work))
+    _deepen(best, only, rng, rounds, target, lambda done: report((spent + done) / work))
     return folding_of(solid, grid, best, "growth")
 
 
 def folding_of(solid: VoxelSolid, grid: Grid, fold: Fold, method: str) -> Folding:
     """The path and the motion that a fold stands for."""
-    path = fold.path[: fold.size[0]]
+    path = path_of(fold)
     inside = np.pad(solid.occupancy, 1).ravel()
     inside[path] = False
     dropped = grid.xyz[np.flatnonzero(inside)]
     voxels = grid.xyz[path]
-    motion = motion_of(voxels, fold.states[: fold.size[1]])
+    motion = motion_of(voxels, states_of(fold))
     return Folding(VoxelPath(voxels, dropped=dropped, method=method), motion)
 
 
@@ -155,19 +171,20 @@ def _exposed_bar(solid: VoxelSolid) -> IntArray:
     return np.stack([voxels[beside][0], top])
 
 
-def _grown(grid: Grid, body: Body, cells: IntArray, rng: np.random.Generator, target: int) -> Fold:
+def _grown(
+    grid: Grid, body: Body, cells: IntArray, only: int, rng: np.random.Generator, target: int
+) -> Fold:
     """A start path made straightenable, with what fits in at once."""
     n_voxels = int(body.solid.sum())
-    cells, states = straightenable(grid, cells, rng)
-    fold = new_fold(len(body.solid), cells, states, n_voxels + 16)
-    fill(grid, body, fold, 20 * n_voxels, target, rng)
+    cells, states = straightenable(grid, cells, rng, only)
+    fold = new_fold(grid, body, cells, states)
+    fill(fold, 20 * n_voxels, target, rng)
     return fold
 
 
 def _deepen(
-    grid: Grid,
-    body: Body,
     fold: Fold,
+    only: int,
     rng: np.random.Generator,
     rounds: int,
     target: int,
@@ -177,9 +194,9 @@ def _deepen(
     for done in range(0, rounds, BATCH):
         batch = min(BATCH, rounds - done)
         hot, cold = (HOT * (1 - x / rounds) + COLD for x in (done, done + batch))
-        anneal(grid, body, fold, batch, hot, cold, target, rng)
-        path = fold.path[: fold.size[0]].copy()
-        states = peel_plan(grid, path, rng, bias=float(rng.choice(BIASES)))
+        anneal(fold, batch, hot, cold, target, rng)
+        path = path_of(fold)
+        states = peel_plan(fold.grid, path, rng, bias=float(rng.choice(BIASES)), only=only)
         if left_folded(states) <= 1:
             load(fold, path, states)
         report(done + batch)
