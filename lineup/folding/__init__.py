@@ -6,10 +6,9 @@ from typing import Any
 import numpy as np
 
 from .._options import checked
-from ..layered import layered_path
-from ..motion import unfold
 from ..solid import Folding, VoxelSolid
 from .growth import growth
+from .layerwise import layered_folding, paper_folding, top_ends_folding
 from .pulling import pulled
 from .shorten import shortened_folding
 
@@ -29,9 +28,11 @@ def fold(
         A key of `FOLD_METHODS`. ``"growth"`` changes path and motion together and always ends
         straight; its options are `paths`, `trial_rounds`, `rounds` and `progress`.
         ``"layered"`` unfolds a layered path (Sections 4 and 6), which may get stuck; its option
-        is `starts`. ``"pull"`` pulls a path of the method `path` (``"ufree"``) out by one end:
-        for thinner bars, see `Motion.diameter` and `max_bend_deg`; its other option is `sweeps`,
-        that of the path.
+        is `starts`. So is that of ``"top_ends"``, which puts both ends of the path on top and
+        pulls them upward (Section 7). ``"paper"`` is Algorithms 2 to 4 as published.
+        ``"pull"`` pulls a path of the method `path` (``"ufree"``) out by one end: for thinner
+        bars, see `Motion.diameter` and `max_bend_deg`; its other option is `sweeps`, that of the
+        path.
     length : int, optional
         Even number of voxels to trim to. A path that stays shorter is returned as it is.
     seed : int
@@ -72,15 +73,11 @@ def fold(
     return shortened_folding(folding, length)
 
 
-def _layered(solid: VoxelSolid, seed: int, length: int | None, *, starts: int = 4) -> Folding:
-    del length  # the caller trims
-    path = layered_path(solid, seed=seed, starts=starts)
-    return Folding(path, unfold(path, seed=seed))
-
-
 FOLD_METHODS: dict[str, Callable[..., Folding]] = {
     "growth": growth,
-    "layered": _layered,
+    "layered": layered_folding,
+    "top_ends": top_ends_folding,
     "pull": pulled,
+    "paper": paper_folding,
 }
 """The planners of path and motion by name: functions of a solid, seed, length and options."""

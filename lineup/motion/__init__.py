@@ -1,13 +1,14 @@
 """Unfolding a given path into a straight line (Sections 6 and 7)."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from .._options import checked
 from ..solid import Motion, VoxelPath
-from .accordion import accordion
-from .peel import peel
+from .peeling import check_efforts, peel
 from .pulling import pull
+from .tilting import accordion
 
 
 def unfold(path: VoxelPath, method: str = "auto", seed: int = 0, **options: Any) -> Motion:
@@ -17,10 +18,11 @@ def unfold(path: VoxelPath, method: str = "auto", seed: int = 0, **options: Any)
     ----------
     method : str
         A key of `MOTION_METHODS`. ``"accordion"`` straightens a monotone path in one move;
-        ``"peel"`` searches for an order in which the two ends let go of bar after bar, with
-        options `tries` and `patience`; ``"pull"`` draws the chain out along its own track, for
-        thinner bars, see `Motion.diameter` and `max_bend_deg`; ``"auto"`` peels where the
-        accordion cannot.
+        ``"peel"`` searches for an order in which the two ends let go of bar
+        after bar, after limbs have moved out of the way if need be, with options `tries`,
+        `patience` and `rounds`; ``"pull"`` draws the chain out along its own track, for thinner
+        bars, see `Motion.diameter` and `max_bend_deg`; ``"auto"`` peels where the accordion
+        cannot, and pulls where peeling cannot if its option `thin` allows thinner bars.
     seed : int
         The same path, seed and options give the same motion.
 
@@ -41,7 +43,7 @@ def unfold(path: VoxelPath, method: str = "auto", seed: int = 0, **options: Any)
     >>> import numpy as np, lineup as lu
     >>> path = lu.layered_path(lu.VoxelSolid(np.ones((4, 4, 3), bool)))
     >>> lu.unfold(path).reason
-    'straight'
+    'straight: accordion, since the path is monotone'
     """
     checked(MOTION_METHODS, method, options, "motion method")
     if len(path) < 2:
@@ -49,9 +51,30 @@ def unfold(path: VoxelPath, method: str = "auto", seed: int = 0, **options: Any)
     return MOTION_METHODS[method](path, seed, **options)
 
 
-def _auto(path: VoxelPath, seed: int, *, tries: int = 12, patience: int = 20_000) -> Motion:
-    motion = accordion(path, seed)
-    return motion if motion.straight else peel(path, seed, tries=tries, patience=patience)
+def _auto(
+    path: VoxelPath,
+    seed: int,
+    *,
+    tries: int = 12,
+    patience: int = 20_000,
+    rounds: int = 40,
+    thin: bool = False,
+) -> Motion:
+    """The first method of accordion, peel and, if bars may be `thin`, pull that ends straight."""
+    check_efforts(tries, patience, rounds)
+    tilted = accordion(path, seed)
+    if tilted.straight:
+        return replace(tilted, reason="straight: accordion, since the path is monotone")
+    peeled = peel(path, seed, tries=tries, patience=patience, rounds=rounds)
+    if peeled.straight:
+        return replace(peeled, reason=f"{peeled.reason}: peel, since the path is not monotone")
+    why = f"peel is {peeled.reason}"
+    if thin:
+        pulled = pull(path, seed)
+        if pulled.straight:
+            return replace(pulled, reason=f"straight: pull, since {why}")
+        why += f"; pull: {pulled.reason}"
+    return replace(peeled, reason=f"{tilted.reason}; {why}")
 
 
 MOTION_METHODS: dict[str, Callable[..., Motion]] = {

@@ -84,6 +84,21 @@ def _clear_ray(grid: Grid, chain: Chain, state: IntArray, end: int, k: int) -> b
 
 
 @kernel
+def keeps_rules(grid: Grid, chain: Chain, states: IntArray) -> bool:
+    """Whether each state of a plan leads to the next by a peel or a swing that is allowed."""
+    for k in range(len(states) - 1):
+        old, new = states[k], states[k + 1]
+        end = 0 if old[1] == new[1] and old[3] == new[3] else 1
+        if old[end] != new[end]:
+            allowed = old[2 + end] == new[2 + end] and may_peel(grid, chain, old, end)
+        else:
+            allowed = may_swing(grid, chain, old, end, new[2 + end])
+        if not allowed:
+            return False
+    return True
+
+
+@kernel
 def search(
     grid: Grid,
     chain: Chain,

@@ -8,7 +8,7 @@ from ..grid import IntArray, bar_directions
 from ..kinematics import Move
 from ..solid import Motion
 from ._chain import INWARD, Grid, box_grid, cells_of, link
-from ._search import search
+from ._search import keeps_rules, search
 
 DIAMETER = 0.999
 """Peels and swings keep bars a whole voxel apart; the rest is room for rounding."""
@@ -74,8 +74,8 @@ def motion_of(voxels: IntArray, states: IntArray) -> Motion:
 
 
 def has_peel_plan(motion: Motion) -> bool:
-    """Whether a motion ends straight and has no other moves than peels and swings."""
-    return motion.straight and bool(np.isin(motion.moves[:, 0], (Move.PEEL, Move.SWING)).all())
+    """Whether a motion ends straight by a peel plan: nothing but its two straight rods moves."""
+    return len(_plan_behind(motion)) > 0
 
 
 def states_of(motion: Motion) -> IntArray:
@@ -84,10 +84,19 @@ def states_of(motion: Motion) -> IntArray:
     Raises
     ------
     ValueError
-        If the motion has other kinds of move or does not end straight.
+        If the motion moves in other ways or does not end straight.
     """
-    if not has_peel_plan(motion):
+    states = _plan_behind(motion)
+    if not len(states):
         raise ValueError("only a motion of peels and swings that ends straight has a peel plan")
+    return states
+
+
+def _plan_behind(motion: Motion) -> IntArray:
+    """The states (K, 4) of `states_of`; none if they would not be a peel plan of this motion."""
+    none = np.empty((0, 4), np.int32)
+    if not (motion.straight and np.isin(motion.moves[:, 0], (Move.PEEL, Move.SWING)).all()):
+        return none
     state = [0, len(motion.start) - 1, _first_rod(motion, 0), _first_rod(motion, 1)]
     states = [tuple(state)]
 
@@ -99,12 +108,19 @@ def states_of(motion: Motion) -> IntArray:
 
     for kind, joint, other, value in motion.moves.tolist():
         end = int(other > joint)
+        if not state[0] <= joint <= state[1]:
+            return none
         let_go(end, joint)
         if kind == Move.SWING:
             state[2 + end] = value
             states.append(tuple(state))
+    if state[0] == state[1]:
+        return none
     let_go(1, state[0] + 1)
-    return _without_last_swings(np.array(states, np.int32))
+    plan = _without_last_swings(np.array(states, np.int32))
+    grid, cells = path_grid(motion.start)
+    same = np.array_equal(motion_of(motion.start, plan).moves, motion.moves)
+    return plan if same and keeps_rules(grid, link(grid, cells), plan) else none
 
 
 def _first_rod(motion: Motion, end: int) -> int:
