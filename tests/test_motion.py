@@ -125,7 +125,7 @@ def test_peel_of_walks_packed_in_a_box(seed, n):
 
 
 def test_peel_says_which_joints_are_stuck():
-    motion = lu.unfold(lu.VoxelPath(walk(LOCKED)), method="peel")
+    motion = lu.unfold(lu.VoxelPath(walk(LOCKED)), method="peel", rounds=0)
     assert (
         motion.reason == f"stuck with joints 0 to {len(LOCKED)} of {len(LOCKED) + 1} still folded"
     )
@@ -148,6 +148,7 @@ def test_the_same_seed_gives_the_same_motion():
         ({"method": "accordion", "tries": 2}, "'accordion' has no option 'tries'; known: "),
         ({"method": "peel", "tries": 0}, "tries must be at least 1, got 0"),
         ({"method": "peel", "patience": -1}, "patience must be at least 1, got -1"),
+        ({"method": "peel", "rounds": -1}, "rounds must be at least 0, got -1"),
     ],
 )
 def test_bad_arguments_are_refused_in_one_line(options, message):
@@ -335,7 +336,7 @@ def test_plans_keep_the_rules_and_come_back_from_their_motions(seed, n, bias):
 
 
 def test_states_of_refuses_other_motions():
-    stuck = lu.unfold(lu.VoxelPath(walk(LOCKED)), method="peel")
+    stuck = lu.unfold(lu.VoxelPath(walk(LOCKED)), method="peel", rounds=0)
     tilted = lu.unfold(lu.VoxelPath(walk("ENUU")), method="accordion")
     for motion in (stuck, tilted):
         with pytest.raises(ValueError, match="has a peel plan"):

@@ -20,11 +20,11 @@ def unfold(path: VoxelPath, method: str = "auto", seed: int = 0, **options: Any)
     ----------
     method : str
         A key of `MOTION_METHODS`. ``"accordion"`` straightens a monotone path in one move;
-        ``"peel"`` searches for an order in which the two ends let go of bar
-        after bar, after limbs have moved out of the way if need be, with options `tries`,
-        `patience` and `rounds`; ``"pull"`` draws the chain out along its own track, for thinner
-        bars, see `Motion.diameter` and `max_bend_deg`; ``"auto"`` peels where the accordion
-        cannot, and pulls where peeling cannot if its option `thin` allows thinner bars.
+        ``"peel"`` searches for an order in which the two ends let go of bar after bar, after
+        limbs have moved out of the way if need be; its options are `tries`, `patience` and
+        `rounds`. ``"pull"`` draws the chain out along its own track, for thinner bars, see
+        `Motion.diameter` and `max_bend_deg`. ``"auto"`` peels where the accordion cannot, and
+        pulls where peeling cannot if its option `thin` allows thinner bars.
     seed : int
         The same path, seed and options give the same motion.
 
@@ -57,9 +57,9 @@ def _auto(
     path: VoxelPath,
     seed: int,
     *,
-    tries: int = 12,
-    patience: int = 20_000,
-    rounds: int = 40,
+    tries: int = 4,
+    patience: int = 5_000,
+    rounds: int = 100,
     thin: bool = False,
 ) -> Motion:
     """The first method of accordion, peel and, if bars may be `thin`, pull that ends straight."""

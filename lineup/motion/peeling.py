@@ -11,8 +11,9 @@ from numpy.random import Generator
 
 from ..grid import LETTERS, IntArray
 from ..solid import Motion, VoxelPath
-from ._chain import Grid, box_grid, cells_of
+from ._chain import INWARD, Grid, box_grid, cells_of, link
 from ._limbs import arcs, open_pose, open_up
+from ._search import may_peel
 from .plan import left_folded, motion_of, path_grid, peel_plan
 
 BIASES = (0.02, 0.98, 0.5)
@@ -23,12 +24,15 @@ PROPOSALS = 2
 """Limb moves tried in a round, for each joint."""
 
 HEAT = 0.5
-HASTE = 20
+RESTART = 20
+"""Rounds after which limbs are moved anew from the path as it is."""
+
+HASTE = 5
 """A search between rounds gives up so many times sooner."""
 
 
 def peel(
-    path: VoxelPath, seed: int, *, tries: int = 12, patience: int = 20_000, rounds: int = 40
+    path: VoxelPath, seed: int, *, tries: int = 4, patience: int = 5_000, rounds: int = 100
 ) -> Motion:
     """The best of several searches for a motion of peels and swings, the pose opened if need be.
 
@@ -66,21 +70,30 @@ def check_efforts(tries: int, patience: int, rounds: int) -> None:
 def peel_upward(path: VoxelPath, seed: int) -> Motion:
     """Both ends pulled upward, as the paper does it by hand (Section 7); else what `peel` finds.
 
-    Its `reason` tells how far pulling upward went.
+    Its `reason` tells how far pulling upward goes by itself.
     """
-    grid, cells = path_grid(path.voxels)
-    up = LETTERS.index("U")
-    start = np.array([[0, len(path) - 1, up, up]])
-    states = peel_plan(grid, cells, np.random.default_rng(seed), starts=start)
+    states = _upward_plan(*path_grid(path.voxels))
     motion = motion_of(path.voxels, states)
-    turns = np.flatnonzero((states[:, 2:] != up).any(axis=1))
-    if motion.straight and not len(turns):
+    if motion.straight:
         return replace(motion, reason="straight: both ends pulled upward")
-    far = states[turns[0] - 1] if len(turns) else states[-1]
-    why = f"upward alone lets go of {len(path) - 1 - (far[1] - far[0])} of {len(path) - 1} bars"
-    if not motion.straight:
-        motion = peel(path, seed)
-    return replace(motion, reason=f"{motion.reason}: {why}")
+    n_bars = len(path) - 1
+    far = f"upward alone lets go of {n_bars - left_folded(states)} of {n_bars} bars"
+    motion = peel(path, seed)
+    return replace(motion, reason=f"{motion.reason}: {far}")
+
+
+def _upward_plan(grid: Grid, cells: IntArray) -> IntArray:
+    """Peels of rods that point up, as far as they go; in which order makes no difference."""
+    up = LETTERS.index("U")
+    chain, state = link(grid, cells), np.array([0, len(cells) - 1, up, up], np.int32)
+    states = [state.copy()]
+    while state[1] - state[0] > 1:
+        ends = [end for end in range(2) if may_peel(grid, chain, state, end)]
+        if not ends:
+            break
+        state[ends[0]] += INWARD[ends[0]]
+        states.append(state.copy())
+    return np.array(states)
 
 
 def _best_plan(grid: Grid, cells: IntArray, rng: Generator, tries: int, patience: int) -> IntArray:
@@ -96,22 +109,15 @@ def _best_plan(grid: Grid, cells: IntArray, rng: Generator, tries: int, patience
 
 def _opened(voxels: IntArray, rng: Generator, rounds: int, patience: int) -> Motion:
     """Limb moves, then peels: straight if a search between two rounds found a complete plan."""
-    pose = open_pose(voxels, ROOM)
-    shape = pose.joint.shape
-    grid, rows = box_grid(shape), []
-    for _ in range(rounds):
+    for k in range(rounds):
+        if k % RESTART == 0:
+            pose, rows = open_pose(voxels, ROOM), []
         rows.append(open_up(pose, arcs(), PROPOSALS * len(voxels), HEAT, rng))
-        states = _best_plan(grid, cells_of(pose.place, shape), rng, len(BIASES), patience)
+        grid, cells = box_grid(pose.joint.shape), cells_of(pose.place, pose.joint.shape)
+        states = peel_plan(grid, cells, rng, patience=patience, bias=BIASES[k % len(BIASES)])
         if left_folded(states) <= 1:
             break
     motion = motion_of(pose.place, states)
     reason = f"{motion.reason} after {sum(map(len, rows))} limb moves"
-    rows.append(motion.moves)
-    return Motion(
-        voxels,
-        np.concatenate(rows),
-        motion.diameter,
-        motion.max_bend_deg,
-        motion.straight,
-        reason,
-    )
+    moves = np.concatenate([*rows, motion.moves])
+    return replace(motion, start=voxels, moves=moves, reason=reason)
