@@ -23,7 +23,10 @@ def unfold(path: VoxelPath, method: str = "auto", seed: int = 0, **options: Any)
         ``"peel"`` searches for an order in which the two ends let go of bar after bar, after
         limbs have moved out of the way if need be; its options are `tries`, `patience` and
         `rounds`. ``"pull"`` draws the chain out along its own track, for thinner bars, see
-        `Motion.diameter` and `max_bend_deg`. ``"auto"`` peels where the accordion cannot, and
+        `Motion.diameter` and `max_bend_deg`. ``"energy"`` is the paper's Algorithm 4, with options
+        `axis` of projection and `steps`: it keeps no width and stops at `stationary` points or
+        the step limit; ``"barrier"`` unfolds the same projection with bars of a given `diameter`,
+        over the `axes` in turn, each for at most so many `steps`. ``"auto"`` peels where the accordion cannot, and
         pulls where peeling cannot if its option `thin` allows thinner bars.
     seed : int
         The same path, seed and options give the same motion.
