@@ -52,9 +52,9 @@ def malformed(pose, kind, joint, other, value):
     return abs(other - joint) != 1 or value not in range(6) or apart[value % 3] != 0
 
 
-def move_clearance(pose, kind, joint, other, value):
-    """Smallest distance, capped at 1, of bars two or more apart during one good move."""
-    bars = np.arange(len(pose) - 1)
+def move_clearance(pose, kind, joint, other, value, only=None):
+    """Smallest distance, capped at 1, of bars two or more apart in a move, of all or some."""
+    bars = np.arange(len(pose) - 1) if only is None else np.array(only)
     local = seen(pose, kind, joint, other, value)
     if kind == Move.DOOR:
         moves = (joint <= bars) & (bars < other)
@@ -65,7 +65,7 @@ def move_clearance(pose, kind, joint, other, value):
         return nearest(moving, rest, turning=True)
     turns = moving[:, 6] == min(joint, other)
     from_other = local - (1, 0, 0)  # where the bar turns about `other`, seen from what it carries
-    bar, carried = rows(from_other, [min(joint, other)]), rows(from_other, moving[~turns, 6])
+    bar, carried = rows(from_other, moving[turns, 6]), rows(from_other, moving[~turns, 6])
     return min(
         nearest(moving[turns], rest, turning=True),
         nearest(moving[~turns], rest, turning=False),

@@ -4,7 +4,7 @@ import os
 
 import numpy as np
 import pytest
-from all_pairs import outcome
+from all_pairs import move_clearance, outcome
 from chains import boustrophedon, motion, peeled, peeled_from_both_ends, turns, wander
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -15,6 +15,13 @@ from lineup import grid, kinematics
 
 SEEDS = st.integers(0, 2**32 - 1)
 WORDS = {"malformed": "malformed", "touch": "come within", "bend": "bend of"}
+
+
+def pose_before(good, k):
+    pose = good.start.astype(float)
+    for move in good.moves[:k]:
+        pose = np.rint(kinematics.moved(pose, move, good, 1.0))
+    return pose.astype(int)
 
 
 def check(trial, diameter=0.999, max_bend_deg=90.0):
@@ -29,6 +36,11 @@ def check(trial, diameter=0.999, max_bend_deg=90.0):
     if slow.fault:
         assert WORDS[slow.fault] in verdict.reason
         assert verdict.moves_checked == slow.where + 1
+    where, a, b = verdict.nearest
+    if where >= 0:
+        move, pose = trial.moves[where].tolist(), pose_before(trial, where)
+        near = move_clearance(pose, *move, only=(a, b))
+        assert near == pytest.approx(verdict.clearance, abs=1e-12)
     return slow.fault
 
 
@@ -71,13 +83,6 @@ LONG["from shape to shape"] = there_and_back(
 def test_long_motions_are_good_as_they_are(name):
     assert lu.certify(LONG[name]).ok
     assert check(LONG[name]) == ""
-
-
-def pose_before(good, k):
-    pose = good.start.astype(float)
-    for move in good.moves[:k]:
-        pose = np.rint(kinematics.moved(pose, move, good, 1.0))
-    return pose.astype(int)
 
 
 def planted(good, fault, rng):

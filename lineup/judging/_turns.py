@@ -73,18 +73,16 @@ def carry_out(pose: Ints, moves: Ints, first: int, limits: Limits, extent: Float
 
     `pose` is moved along, and `extent`, (2, 3) the lowest and highest positions met, widened.
     """
-    n = len(pose)
+    n, chain = len(pose), new_chain(pose)
     court = Court(
-        new_chain(pose),
+        chain,
         Nearest(np.ones(1), np.empty((2, 9), np.int64), np.zeros(1, np.int64)),
         extent,
         np.empty((n, 9), np.int64),
         np.empty((n, 9), np.int64),
         np.empty(9, np.int64),
     )
-    corners = 0
-    for joint in range(n):
-        corners += _bend_at(court.chain, joint) > 0
+    corners = max(0, chain.n_runs[1] - 1)
     where, fault, straight = first, FINE, False
     near, bend_deg, bent = (-1, -1, -1), 0.0, (-1, -1)
     while fault == FINE and where < len(moves) and moves[where, 0] in (_PEEL, _SWING, _DOOR):
@@ -99,7 +97,7 @@ def carry_out(pose: Ints, moves: Ints, first: int, limits: Limits, extent: Float
         if fault == FINE:
             straight = straight or corners == 0
             where += 1
-    lay_out(court.chain)
+    lay_out(chain)
     return Found(where, fault, straight, court.nearest.distance[0], near, bend_deg, bent)
 
 
