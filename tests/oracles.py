@@ -260,19 +260,19 @@ def rod_fault(voxels, states):
 def swept_points(voxels, states, before, reach):
     """Lattice points that the steps 0..before-1 of a plan sweep; a pivot is not swept itself.
 
-    The first ray of an end that ever lets go counts as swept from the outset.
+    An end's first peel sweeps the ray of its first rod as well.
     """
     points = [tuple(v) for v in np.asarray(voxels).tolist()]
     last, states = len(points) - 1, np.asarray(states).tolist()
     swept = set()
     for end in range(2):
-        if states[-1][end] != last * end:
-            first = points[last * end]
-            swept |= lattice_ray(first, states[0][2 + end], reach) - {first}
         for old, new in itertools.pairwise(states[: before + 1]):
             pivot, d, f = points[new[end]], old[2 + end], new[2 + end]
             if new[end] != old[end]:
                 swept |= lattice_ray(pivot, f, reach) - {pivot}
+                if old[end] == last * end:
+                    first = points[last * end]
+                    swept |= lattice_ray(first, d, reach) - {first}
             elif d != f:
                 swept |= lattice_quadrant(pivot, d, f, reach) - {pivot}
     return swept

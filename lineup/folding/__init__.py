@@ -9,7 +9,7 @@ from .._options import checked
 from ..layered import layered_path
 from ..motion import unfold
 from ..solid import Folding, VoxelSolid
-from .growth import growth
+from .growing import growth
 from .pulling import pulled
 from .shorten import shortened_folding
 

@@ -10,19 +10,15 @@ import numpy as np
 from numpy.random import Generator
 
 from .._jit import kernel
-from ..grid import BoolArray, FloatArray, IntArray
+from ..grid import BoolArray, IntArray
 from ..motion._chain import Grid
-from ._fold import Fold, load, replace
+from ._fold import BACK, NEXT, RANK, Fold, commit, load, n_joints, path_of, root_of, states_of, undo
+from ._piece import replace
 
 NEAR = 64  # holes looked at around a rerouted piece
 FLIPS_PER_HOLE = 24
-
-
-class Body(NamedTuple):
-    """The solid to fill, cell by cell."""
-
-    solid: BoolArray  # (C,)
-    weight: FloatArray  # (C,) worth of a voxel on the path
+FILLING = 100  # tries of filling between commits
+LONGEST = 5  # a rerouted piece has up to 2 + 2^LONGEST cells
 
 
 class Holes(NamedTuple):
@@ -71,61 +67,50 @@ def clear_holes(holes: Holes) -> None:
 
 
 @kernel
-def all_holes(body: Body, fold: Fold) -> Holes:
-    """Every hole of a fold."""
-    holes = no_holes(len(body.solid), len(body.solid))
-    for cell in np.flatnonzero(body.solid):
-        if fold.joint[cell] < 0:
-            add_hole(holes, int(cell))
-    return holes
-
-
-@kernel
-def is_hole(body: Body, fold: Fold, cell: int) -> bool:
-    """Whether `cell` is in the solid and not on the path."""
-    return body.solid[cell] and fold.joint[cell] < 0
-
-
-@kernel
-def fill(grid: Grid, body: Body, fold: Fold, tries: int, target: int, rng: Generator) -> None:
+def fill(fold: Fold, tries: int, target: int, rng: Generator) -> None:
     """Climb over all holes."""
-    climb(grid, body, fold, all_holes(body, fold), tries, target, rng)
+    holes = no_holes(len(fold.free), len(fold.cells))
+    for cell in np.flatnonzero(fold.free):
+        add_hole(holes, cell)
+    for _ in range(0, tries, FILLING):
+        climb(fold, holes, FILLING, target, rng)
+        commit(fold)
 
 
 @kernel
-def climb(
-    grid: Grid, body: Body, fold: Fold, holes: Holes, tries: int, target: int, rng: Generator
-) -> None:
+def climb(fold: Fold, holes: Holes, tries: int, target: int, rng: Generator) -> None:
     """Insert pairs of holes and flip corners until tries, holes or length run out."""
     for _ in range(tries):
-        if holes.size[0] == 0 or fold.size[0] + 2 > target:
+        if holes.size[0] == 0 or n_joints(fold) + 2 > target:
             return
         hole = holes.cell[rng.integers(0, holes.size[0])]
         if rng.random() < 0.6:
-            _insert_pair(grid, body, fold, holes, hole, rng)
+            _insert_pair(fold, holes, hole, rng)
         else:
-            _flip_corner(grid, body, fold, holes, hole, rng)
+            _flip_corner(fold, holes, hole, rng)
 
 
 @kernel
-def _insert_pair(
-    grid: Grid, body: Body, fold: Fold, holes: Holes, hole: int, rng: Generator
-) -> bool:
+def _insert_pair(fold: Fold, holes: Holes, hole: int, rng: Generator) -> bool:
     """Lead a bar that runs beside two adjacent holes through them."""
+    offset, notes = fold.grid.offset, fold.notes
     d = rng.integers(0, 6)
-    mate = hole + grid.offset[d]
-    if not is_hole(body, fold, mate):
+    mate = hole + offset[d]
+    if not fold.free[mate]:
         return False
     side = rng.integers(0, 6)
     for turn in range(6):
         f = (side + turn) % 6
-        if f % 3 == d % 3:
+        u, v = hole + offset[f], mate + offset[f]
+        if f % 3 == d % 3 or notes[RANK, u] < 0 or notes[RANK, v] < 0:
             continue
-        i, j = fold.joint[hole + grid.offset[f]], fold.joint[mate + grid.offset[f]]
-        if i < 0 or j < 0 or abs(i - j) != 1:
+        if notes[NEXT, u] == v:
+            done = replace(fold, u, v, np.array([hole, mate], np.int32))
+        elif notes[NEXT, v] == u:
+            done = replace(fold, v, u, np.array([mate, hole], np.int32))
+        else:
             continue
-        new = np.array([hole, mate] if i < j else [mate, hole], np.int32)
-        if replace(grid, fold, min(i, j), max(i, j), new):
+        if done:
             drop_hole(holes, hole)
             drop_hole(holes, mate)
             return True
@@ -133,20 +118,23 @@ def _insert_pair(
 
 
 @kernel
-def _flip_corner(
-    grid: Grid, body: Body, fold: Fold, holes: Holes, hole: int, rng: Generator
-) -> bool:
+def _flip_corner(fold: Fold, holes: Holes, hole: int, rng: Generator) -> bool:
     """Move a corner of the path across its unit square into the hole opposite."""
-    beside = fold.joint[hole + grid.offset[rng.integers(0, 6)]]
-    i = beside - 2 * rng.integers(0, 2)
-    if beside < 0 or i < 0 or i + 2 >= fold.size[0]:
+    grid, notes, root = fold.grid, fold.notes, root_of(fold)
+    beside = hole + grid.offset[rng.integers(0, 6)]
+    onward = NEXT if rng.random() < 0.5 else BACK
+    if notes[RANK, beside] < 0:
         return False
-    before, corner, after = fold.path[i], fold.path[i + 1], fold.path[i + 2]
-    if not (_adjacent(grid, before, hole) and _adjacent(grid, after, hole)):
+    corner = notes[onward, beside]
+    if corner == root or notes[onward, corner] == root:
         return False
-    if body.weight[corner] > body.weight[hole] and rng.random() < 0.7:
+    far = notes[onward, corner]
+    if not _adjacent(grid, far, hole):
         return False
-    if not replace(grid, fold, i, i + 2, np.array([hole], np.int32)):
+    if fold.weight[corner] > fold.weight[hole] and rng.random() < 0.7:
+        return False
+    u, v = (beside, far) if onward == NEXT else (far, beside)
+    if not replace(fold, u, v, np.array([hole], np.int32)):
         return False
     drop_hole(holes, hole)
     add_hole(holes, corner)
@@ -159,159 +147,181 @@ def _adjacent(grid: Grid, cell: int, other: int) -> bool:
 
 
 @kernel
-def contract_all(
-    grid: Grid, fold: Fold, keep: BoolArray, length: int, longest: int, in_layer: bool
-) -> None:
+def contract_all(fold: Fold, keep: BoolArray, length: int, longest: int, in_layer: bool) -> None:
     """Contract pairs of index up to `longest` down to `length`, none with a voxel to `keep`.
 
-    The joints between i and j may go where i and j are adjacent and a plan remains, and if asked
-    for, where i to j lie in one layer.
+    The joints between two may go where the two are adjacent and a plan remains, and if asked
+    for, where all of them lie in one layer.
     """
     changed = True
-    while changed and fold.size[0] > length:
+    while changed and n_joints(fold) > length:
         changed = False
-        i = 0
-        while i + 3 < fold.size[0] and fold.size[0] > length:
-            index = min(longest, fold.size[0] - length)
-            changed |= _contract_from(grid, fold, keep, i, index, in_layer)
-            i += 1
+        joint = fold.notes[NEXT, root_of(fold)]
+        while joint != root_of(fold) and n_joints(fold) > length:
+            index = min(longest, n_joints(fold) - length)
+            changed |= _contract_from(fold, keep, joint, index, in_layer)
+            commit(fold)
+            joint = fold.notes[NEXT, joint]
 
 
 @kernel
-def _contract_from(
-    grid: Grid, fold: Fold, keep: BoolArray, i: int, longest: int, in_layer: bool
-) -> bool:
-    """Contract the pair of least index that begins at joint i, if there is one."""
-    z = grid.xyz[fold.path[i], 2]
-    for j in range(i + 3, min(i + 2 + longest, fold.size[0]), 2):
-        for cell in fold.path[j - 2 : j]:
-            if keep[cell] or (in_layer and grid.xyz[cell, 2] != z):
+def _contract_from(fold: Fold, keep: BoolArray, u: int, longest: int, in_layer: bool) -> bool:
+    """Contract the pair of least index that begins at joint u, if there is one."""
+    xyz, onward, root = fold.grid.xyz, fold.notes[NEXT], root_of(fold)
+    v = onward[u]
+    for _ in range(0, longest, 2):
+        for _ in range(2):
+            if v == root or keep[v] or (in_layer and xyz[v, 2] != xyz[u, 2]):
                 return False
-        if in_layer and grid.xyz[fold.path[j], 2] != z:
+            v = onward[v]
+        if v == root or (in_layer and xyz[v, 2] != xyz[u, 2]):
             return False
-        adjacent = _adjacent(grid, fold.path[i], fold.path[j])
-        if adjacent and replace(grid, fold, i, j, np.empty(0, np.int32)):
+        if _adjacent(fold.grid, u, v) and replace(fold, u, v, np.empty(0, np.int32)):
             return True
     return False
 
 
 @kernel
-def worth(body: Body, fold: Fold) -> float:
-    """Sum of the weights on the path."""
-    return body.weight[fold.path[: fold.size[0]]].sum()
-
-
-@kernel
-def anneal(
-    grid: Grid,
-    body: Body,
-    fold: Fold,
-    rounds: int,
-    hot: float,
-    cold: float,
-    target: int,
-    rng: Generator,
-) -> None:
+def anneal(fold: Fold, rounds: int, hot: float, cold: float, target: int, rng: Generator) -> None:
     """Reroute random pieces near holes, climb around them, keep what a cooling random test lets.
 
     The fold ends as the best met. Worth falls within `hot` at first and `cold` at last.
     """
-    near = no_holes(len(body.solid), NEAR)
-    current = worth(body, fold)
-    best, best_path, best_states = current, _path(fold), _states(fold)
+    near = no_holes(len(fold.free), NEAR)
+    commit(fold)
+    best, best_path, best_states = -1.0, path_of(fold), states_of(fold)
     for k in range(rounds):
-        if fold.size[0] >= target:
+        if n_joints(fold) >= target:
             break
-        path, states = _path(fold), _states(fold)
-        if not _reroute(grid, body, fold, near, rng):
+        before = fold.worth[0]
+        if not _reroute(fold, near, rng):
             continue
-        climb(grid, body, fold, near, FLIPS_PER_HOLE * near.size[0], target, rng)
-        found = worth(body, fold)
-        heat = hot + (cold - hot) * k / rounds
-        if found >= current or rng.random() < np.exp((found - current) / heat):
-            current = found
-            if found > best:
-                best, best_path, best_states = found, _path(fold), _states(fold)
-        else:
-            load(fold, path, states)
-    if current < best:
+        climb(fold, near, FLIPS_PER_HOLE * near.size[0], target, rng)
+        loss = before - fold.worth[0]
+        if loss > 0:
+            heat = hot + (cold - hot) * k / rounds
+            if before > best or rng.random() >= np.exp(-loss / heat):
+                undo(fold)
+            if before > best:
+                best, best_path, best_states = before, path_of(fold), states_of(fold)
+        commit(fold)
+    if fold.worth[0] < best:
         load(fold, best_path, best_states)
 
 
 @kernel
-def _path(fold: Fold) -> IntArray:
-    return fold.path[: fold.size[0]].copy()
+def _reroute(fold: Fold, near: Holes, rng: Generator) -> bool:
+    """Cut a random piece near a random hole and join its ends another way; note the holes there.
 
-
-@kernel
-def _states(fold: Fold) -> IntArray:
-    return fold.states[: fold.size[1]].copy()
-
-
-@kernel
-def _reroute(grid: Grid, body: Body, fold: Fold, near: Holes, rng: Generator) -> bool:
-    """Cut a random piece near a random hole and join its ends another way; note the holes there."""
-    n = fold.size[0]
-    free = body.solid & (fold.joint < 0)
-    holes = np.flatnonzero(free)
-    if n < 8 or len(holes) == 0:
-        return False
-    hole = holes[rng.integers(0, len(holes))]
-    joint = _joint_near(grid, fold, free, hole, rng)
+    A piece that reaches to a tip of the path gives way to one that ends elsewhere.
+    """
+    hole = _random_hole(fold, rng)
+    joint = _joint_near(fold, hole, rng) if hole >= 0 else -1
     if joint < 0:
         return False
-    length = min(n - 2, 2 + rng.integers(0, 1 << rng.integers(1, 6)))
-    i = min(max(joint - rng.integers(0, length + 1), 0), n - length - 1)
-    old = fold.path[i : i + length + 1].copy()
-    free[old] = True
-    new = _random_way(grid, free, old[0], old[-1], hole if rng.random() < 0.5 else -1, rng)
-    if len(new) == 0 or not replace(grid, fold, i, i + length, new[1:-1]):
+    root, notes = root_of(fold), fold.notes
+    length = 2 + rng.integers(0, 1 << rng.integers(1, LONGEST + 1))
+    u = notes[BACK, joint]
+    for _ in range(rng.integers(0, length)):
+        if u == root:
+            break
+        u = notes[BACK, u]
+    old, n_old, v = np.empty(length, np.int32), 0, notes[NEXT, u]
+    while n_old < length and v != root:
+        old[n_old] = v
+        n_old += 1
+        v = notes[NEXT, v]
+    old = old[:n_old]
+    if u == root and v == root:
+        return False
+    fold.free[old] = True
+    new = _new_piece(fold, u, v, n_old, hole, rng)
+    fold.free[old] = False
+    if new[0] < 0 or not replace(fold, u, v, new[1:]):
         return False
     clear_holes(near)
     for cell in old:
-        _note_holes(grid, body, fold, near, cell)
-    _note_holes(grid, body, fold, near, hole)
+        _note_holes(fold, near, cell)
+    _note_holes(fold, near, hole)
     return True
 
 
 @kernel
-def _note_holes(grid: Grid, body: Body, fold: Fold, near: Holes, cell: int) -> None:
-    if is_hole(body, fold, cell):
-        add_hole(near, cell)
-    for d in range(6):
-        if is_hole(body, fold, cell + grid.offset[d]):
-            add_hole(near, cell + grid.offset[d])
+def _new_piece(fold: Fold, u: int, v: int, n_old: int, hole: int, rng: Generator) -> IntArray:
+    """Free cells to lie between joints u and v in place of `n_old`, behind a 1; -1 for none.
+
+    Where u or v is the root they run from the other to a hole, or one short of it.
+    """
+    root = root_of(fold)
+    if u != root and v != root:
+        fold.free[u] = fold.free[v] = True
+        way = _random_way(fold, u, v, hole if rng.random() < 0.5 else -1, rng)
+        fold.free[u] = fold.free[v] = False
+        if len(way) == 0:
+            return np.array([-1], np.int32)
+        way[0] = 1
+        return way[:-1]
+    joint = v if u == root else u
+    fold.free[joint] = True
+    way = random_shortest(fold.grid, fold.free, joint, hole, 3.0, rng)
+    fold.free[joint] = False
+    if len(way) == 0:
+        return np.array([-1], np.int32)
+    if (len(way) - 1 - n_old) % 2:
+        way = way[:-1]
+    if u == root:
+        way[1:] = way[1:][::-1].copy()
+    way[0] = 1
+    return way
 
 
 @kernel
-def _joint_near(grid: Grid, fold: Fold, free: BoolArray, hole: int, rng: Generator) -> int:
+def _random_hole(fold: Fold, rng: Generator) -> int:
+    """A hole, each as likely as any other; -1 if there seems to be none."""
+    for _ in range(len(fold.cells)):
+        cell = fold.cells[rng.integers(0, len(fold.cells))]
+        if fold.free[cell]:
+            return cell
+    return -1
+
+
+@kernel
+def _joint_near(fold: Fold, hole: int, rng: Generator) -> int:
     """A joint met by a random walk through the holes from `hole`, -1 if none was met."""
     cell = hole
     for _ in range(100):
-        step = cell + grid.offset[rng.integers(0, 6)]
-        if fold.joint[step] >= 0:
-            return fold.joint[step]
-        if free[step]:
+        step = cell + fold.grid.offset[rng.integers(0, 6)]
+        if fold.notes[RANK, step] >= 0:
+            return step
+        if fold.free[step]:
             cell = step
     return -1
 
 
 @kernel
-def _random_way(
-    grid: Grid, free: BoolArray, start: int, goal: int, via: int, rng: Generator
-) -> IntArray:
+def _note_holes(fold: Fold, near: Holes, cell: int) -> None:
+    if fold.free[cell]:
+        add_hole(near, cell)
+    for d in range(6):
+        if fold.free[cell + fold.grid.offset[d]]:
+            add_hole(near, cell + fold.grid.offset[d])
+
+
+@kernel
+def _random_way(fold: Fold, start: int, goal: int, via: int, rng: Generator) -> IntArray:
     """Free cells from start to goal, through `via` unless it is -1; empty if there is no way."""
+    grid, free = fold.grid, fold.free
     spread = 3.0 * rng.random() ** 2
     if via < 0:
         return random_shortest(grid, free, start, goal, spread, rng)
-    open_now = free.copy()
-    open_now[goal] = False
-    first = random_shortest(grid, open_now, start, via, spread, rng)
+    free[goal] = False
+    first = random_shortest(grid, free, start, via, spread, rng)
+    free[goal] = True
     if len(first) == 0:
         return first
-    open_now[first[:-1]] = False
-    open_now[goal] = True
-    second = random_shortest(grid, open_now, via, goal, spread, rng)
+    free[first[:-1]] = False
+    second = random_shortest(grid, free, via, goal, spread, rng)
+    free[first[:-1]] = True
     if len(second) == 0:
         return second
     return np.concatenate((first, second[1:]))

@@ -8,7 +8,8 @@ from ..motion import unfold
 from ..motion._chain import box_grid, cells_of
 from ..motion.plan import has_peel_plan, motion_of, states_of
 from ..solid import Folding, VoxelPath
-from ._fold import Fold, load, new_fold
+from ._fold import Body, Fold, load, new_fold, path_of
+from ._fold import states_of as plan_of
 from ._moves import contract_all
 from .pulling import is_pulled, shortened_pulled
 
@@ -27,22 +28,23 @@ def shortened_folding(folding: Folding, length: int, keep: BoolArray | None = No
         path = shortened_path(folding.path, length, keep)
         return Folding(path, unfold(path))
     grid, cells = box_grid(occupancy.shape), cells_of(folding.path.voxels, occupancy.shape)
-    fold = new_fold(len(grid.outside), cells, states_of(folding.motion), len(cells))
+    inside = np.isin(np.arange(len(grid.outside)), cells)
+    fold = new_fold(grid, Body(inside, np.ones(len(inside))), cells, states_of(folding.motion))
     kept = np.pad(keep, 1).ravel()
     nothing = np.zeros_like(kept)
     in_layer = len(folding.path.visits) > 0
-    contract_all(grid, fold, kept, length, 2, in_layer)
-    contract_all(grid, fold, kept, length, len(cells), in_layer)
+    contract_all(fold, kept, length, 2, in_layer)
+    contract_all(fold, kept, length, len(cells), in_layer)
     _cut_ends(fold, kept, length, free=True)
-    contract_all(grid, fold, nothing, length, 2, in_layer)
+    contract_all(fold, nothing, length, 2, in_layer)
     _cut_ends(fold, kept, length, free=False)
-    path = _told(folding.path, np.isin(cells, fold.path[:length]), keep)
-    return Folding(path, motion_of(path.voxels, fold.states[: fold.size[1]]))
+    path = _told(folding.path, np.isin(cells, path_of(fold)), keep)
+    return Folding(path, motion_of(path.voxels, plan_of(fold)))
 
 
 def _cut_ends(fold: Fold, kept: BoolArray, length: int, *, free: bool) -> None:
     """Cut blocks off both ends where the fewest voxels to keep go; none of them if `free`."""
-    path, states = fold.path[: fold.size[0]].copy(), fold.states[: fold.size[1]].copy()
+    path, states = path_of(fold), plan_of(fold)
     n_before = np.concatenate([[0], kept[path].cumsum()])
     for excess in range(len(path) - length, 0, -2):
         first = np.arange(0, excess + 1, 2)

@@ -15,8 +15,8 @@ from ..layered import layered_paths
 from ..motion._chain import Grid, box_grid, cells_of
 from ..motion.plan import left_folded, motion_of, peel_plan
 from ..solid import Folding, VoxelPath, VoxelSolid
-from ._fold import NEVER, Fold, load, new_fold
-from ._moves import Body, anneal, fill, random_shortest, worth
+from ._fold import NEVER, Body, Fold, load, new_fold, path_of, states_of
+from ._moves import anneal, fill, random_shortest
 
 SURFACE_WORTH = 1.5
 HOT, COLD = 3.0, 0.1  # worth lost with likelihood 1/e, at first and at last
@@ -110,24 +110,24 @@ def growth(
     best: Fold | None = None
     for k, start in enumerate(starts):
         fold = _grown(grid, body, cells_of(start, solid.occupancy.shape), rng, target)
-        _deepen(grid, body, fold, rng, trial_rounds, target)
+        _deepen(fold, rng, trial_rounds, target)
         report((k + 1) * trial_rounds / max(work, 1))
-        if best is None or worth(body, fold) > worth(body, best):
+        if best is None or fold.worth[0] > best.worth[0]:
             best = fold
     assert best is not None  # the single bar is always a start
     spent = len(starts) * trial_rounds
-    _deepen(grid, body, best, rng, rounds, target, lambda done: report((spent + done) / work))
+    _deepen(best, rng, rounds, target, lambda done: report((spent + done) / work))
     return folding_of(solid, grid, best, "growth")
 
 
 def folding_of(solid: VoxelSolid, grid: Grid, fold: Fold, method: str) -> Folding:
     """The path and the motion that a fold stands for."""
-    path = fold.path[: fold.size[0]]
+    path = path_of(fold)
     inside = np.pad(solid.occupancy, 1).ravel()
     inside[path] = False
     dropped = grid.xyz[np.flatnonzero(inside)]
     voxels = grid.xyz[path]
-    motion = motion_of(voxels, fold.states[: fold.size[1]])
+    motion = motion_of(voxels, states_of(fold))
     return Folding(VoxelPath(voxels, dropped=dropped, method=method), motion)
 
 
@@ -159,14 +159,12 @@ def _grown(grid: Grid, body: Body, cells: IntArray, rng: np.random.Generator, ta
     """A start path made straightenable, with what fits in at once."""
     n_voxels = int(body.solid.sum())
     cells, states = straightenable(grid, cells, rng)
-    fold = new_fold(len(body.solid), cells, states, n_voxels + 16)
-    fill(grid, body, fold, 20 * n_voxels, target, rng)
+    fold = new_fold(grid, body, cells, states)
+    fill(fold, 20 * n_voxels, target, rng)
     return fold
 
 
 def _deepen(
-    grid: Grid,
-    body: Body,
     fold: Fold,
     rng: np.random.Generator,
     rounds: int,
@@ -177,9 +175,9 @@ def _deepen(
     for done in range(0, rounds, BATCH):
         batch = min(BATCH, rounds - done)
         hot, cold = (HOT * (1 - x / rounds) + COLD for x in (done, done + batch))
-        anneal(grid, body, fold, batch, hot, cold, target, rng)
-        path = fold.path[: fold.size[0]].copy()
-        states = peel_plan(grid, path, rng, bias=float(rng.choice(BIASES)))
+        anneal(fold, batch, hot, cold, target, rng)
+        path = path_of(fold)
+        states = peel_plan(fold.grid, path, rng, bias=float(rng.choice(BIASES)))
         if left_folded(states) <= 1:
             load(fold, path, states)
         report(done + batch)
