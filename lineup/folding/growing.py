@@ -21,6 +21,7 @@ from ._moves import anneal, fill, random_shortest
 SURFACE_WORTH = 1.5
 HOT, COLD = 3.0, 0.1  # worth lost with likelihood 1/e, at first and at last
 BATCH = 400
+RESUMED = 400  # states of a stuck plan from which the search goes on
 BIASES = (0.02, 0.98, 0.02, 0.5)
 
 
@@ -61,17 +62,24 @@ def straightenable(
 def _cut(
     grid: Grid, cells: IntArray, states: IntArray, length: int, rng: np.random.Generator
 ) -> tuple[IntArray, IntArray]:
-    """Shortcut some `length` cells near one stuck end; the shorter path and a plan of it."""
+    """Shortcut some `length` folded cells near one stuck end; the shorter path and a plan of it.
+
+    The states of the plan so far remain good, and the search goes on from the last of them.
+    """
     a, b = int(states[-1, 0]), int(states[-1, 1])
     reach = min(length + int(rng.integers(length)), b - a)
-    slack = int(rng.integers(4))
-    i, j = (a - slack, a + reach) if rng.random() < 0.5 else (b - reach, b + slack)
-    i, j = max(i, 0), min(j, len(cells) - 1)
+    slack = min(int(rng.integers(4)), b - a - reach)
+    i = a + slack if rng.random() < 0.5 else b - slack - reach
+    j = i + reach
     free = np.zeros(len(grid.outside), bool)
     free[cells[i : j + 1]] = True
     way = random_shortest(grid, free, cells[i], cells[j], float(rng.choice((0.01, 0.5, 2.0))), rng)
     shorter = np.concatenate([cells[:i], way, cells[j + 1 :]])
-    return shorter, peel_plan(grid, shorter, rng, patience=1000)
+    former = states + np.array([0, len(shorter) - len(cells), 0, 0], np.int32)
+    bias = float(rng.choice(BIASES))
+    more = peel_plan(grid, shorter, rng, starts=former[-RESUMED:], patience=1000, bias=bias)
+    resumed = int(np.flatnonzero((former == more[0]).all(axis=1))[0])
+    return shorter, np.concatenate([former[:resumed], more])
 
 
 def growth(

@@ -107,7 +107,7 @@ def search(
     for k in rng.permutation(len(starts)):
         _enter(frontier, starts[k], -1)
     best, least = 0, len(chain.cell)
-    expanded, progress, gap = 0, 0, len(chain.cell) - 1
+    expanded, progress, gap = 0, 0, 0
     while expanded - progress <= patience and frontier.size[0] + 24 < budget:
         while gap < len(chain.cell) and frontier.top[gap] < 0:
             gap += 1
