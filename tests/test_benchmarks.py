@@ -14,12 +14,13 @@ import lineup as lu
 
 sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))
 
+import folding
 import paths
 import peers
 
 
-def run(*arguments):
-    result = CliRunner().invoke(paths.app, [str(a) for a in arguments])
+def run(*arguments, app=paths.app):
+    result = CliRunner().invoke(app, [str(a) for a in arguments])
     assert result.exit_code == 0, result.output
     return result.output
 
@@ -59,6 +60,21 @@ def test_coverage_on_a_tiny_solid(tmp_path):
     medians = pd.read_csv(tmp_path / "medians.csv")
     assert medians["models"].tolist() == [1] * 4
     assert medians["refused"].tolist() == [0] * 4
+    assert medians["median_coverage"].tolist() == table["coverage"].tolist()
+
+
+def test_folding_on_a_tiny_solid(tmp_path):
+    chosen = ["--solid", "ball", "--voxels", 40, "--voxels", 60]
+    run("coverage", *chosen, "--out", tmp_path, app=folding.app)
+    table = pd.read_csv(tmp_path / "folding.csv")
+    assert table["certified"].all()
+    assert (table["coverage"] <= table["bound"]).all()
+    assert np.allclose(table["gap"], table["bound"] - table["coverage"])
+    ball = paths.solid_of("ball", 40)
+    again = lu.fold(ball).path
+    assert table["coverage"][0] == again.coverage(ball)
+    medians = pd.read_csv(tmp_path / "folding_medians.csv")
+    assert medians["certified"].tolist() == medians["models"].tolist() == [1, 1]
     assert medians["median_coverage"].tolist() == table["coverage"].tolist()
 
 
