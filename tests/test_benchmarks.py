@@ -14,6 +14,7 @@ import lineup as lu
 
 sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))
 
+import folding
 import motion
 import paths
 import peers
@@ -73,6 +74,21 @@ def test_motions_on_a_tiny_solid(tmp_path):
         table["seconds"].tolist()
     )
     assert (tmp_path / "motion.png").stat().st_size > 1000
+
+
+def test_folding_on_a_tiny_solid(tmp_path):
+    chosen = ["--solid", "ball", "--voxels", 40, "--voxels", 60]
+    run("coverage", *chosen, "--out", tmp_path, app=folding.app)
+    table = pd.read_csv(tmp_path / "folding.csv")
+    assert table["certified"].all()
+    assert (table["coverage"] <= table["bound"]).all()
+    assert np.allclose(table["gap"], table["bound"] - table["coverage"])
+    ball = paths.solid_of("ball", 40)
+    again = lu.fold(ball).path
+    assert table["coverage"][0] == again.coverage(ball)
+    medians = pd.read_csv(tmp_path / "folding_medians.csv")
+    assert medians["certified"].tolist() == medians["models"].tolist() == [1, 1]
+    assert medians["median_coverage"].tolist() == table["coverage"].tolist()
 
 
 def test_a_slow_method_ends(tmp_path):

@@ -5,6 +5,7 @@ from dataclasses import replace as with_changes
 import numpy as np
 import pytest
 from contracts import check_folding
+from hostile import KINDS, hostile
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles import rod_fault
@@ -100,6 +101,13 @@ def test_every_polycube_is_folded(occupancy, seed):
     if occupancy.sum() > 1:
         solid = lu.VoxelSolid(occupancy)
         check_folding(lu.fold(solid, seed=seed, trial_rounds=5, rounds=20), solid)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_hostile_solids_are_folded(kind):
+    for seed in range(3):
+        solid = hostile(kind, seed, 60)
+        check_folding(lu.fold(solid, seed=seed, **QUICK), solid)
 
 
 def test_growth_needs_no_path_to_start_from():

@@ -1,5 +1,6 @@
 """Every model of the catalogue, folded at about 1600 voxels (minutes long)."""
 
+import itertools
 import os
 import time
 
@@ -7,6 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from contracts import check_folding
+from hostile import KINDS, hostile
 
 import lineup as lu
 from lineup import grid
@@ -44,3 +46,13 @@ def test_every_model_is_straightened_and_well_covered(meshes, monkeypatch):
     print(report)
     assert table["coverage"].min() >= 0.85, report
     assert np.median(table["coverage"]) >= 0.96, report
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_hostile_solid_is_straightened(kind):
+    for seed, n in itertools.product(range(6), (100, 500, 2000)):
+        solid = hostile(kind, seed, n)
+        folding = lu.fold(solid, seed=seed)
+        check_folding(folding, solid)
+        print(kind, seed, solid.size, f"{folding.path.coverage(solid):.3f}")

@@ -16,8 +16,9 @@ from ..motion._chain import Grid
 
 NEXT, BACK, RANK, AFTER, BEFORE, TIME, END, AT, ROD, FROM, OTHER, OTHER_ROD, COUNT = range(13)
 """Rows of `Fold.notes`. Of a joint: its neighbours and its label in the path (-1 off it). Of an
-event: its neighbours and its label in the plan (`NEVER` if it is in none), the end that moves, where
-that end is then, its rod then and before, and place (-1 before it starts) and rod of the other."""
+event: its neighbours and its label in the plan (`NEVER` if it is in none), the end that moves,
+where that end is then, its rod then and before, and place (-1 before it starts) and rod of the
+other."""
 
 JOINTS, SLOTS, SPARE, CROWDED = range(4)
 """Columns of the row COUNT: joints of the path, slots for swings ever used, the first that is free

@@ -19,7 +19,8 @@ from ._fold import NEVER, Body, Fold, load, new_fold, path_of, states_of
 from ._moves import anneal, fill, random_shortest
 
 SURFACE_WORTH = 1.5
-HOT, COLD = 3.0, 0.1  # worth lost with likelihood 1/e, at first and at last
+HOT, COLD = 0.6, 0.1  # worth lost with likelihood 1/e, at first and at last
+TRIAL_ROUNDS, ROUNDS = (3, 15_000), (40, 160_000)  # for each voxel, and at most
 BATCH = 400
 RESUMED = 400  # states of a stuck plan from which the search goes on
 BIASES = (0.02, 0.98, 0.02, 0.5)
@@ -99,8 +100,8 @@ def growth(
     length: int | None,
     *,
     paths: Sequence[VoxelPath] | None = None,
-    trial_rounds: int = 2_000,
-    rounds: int = 16_000,
+    trial_rounds: int | None = None,
+    rounds: int | None = None,
     ends: int = 2,
     progress: Callable[[float], None] | None = None,
 ) -> Folding:
@@ -111,15 +112,18 @@ def growth(
     length : int, optional
         Stop at this many voxels.
     paths : sequence of VoxelPath, optional
-        Start paths; layered paths by default. One start more is a single bar.
-    trial_rounds, rounds : int
-        Rounds of annealing for each start, and for the best of them.
+        Start paths; layered paths by default. Without any, growth starts from a single bar.
+    trial_rounds, rounds : int, optional
+        Rounds of annealing for each start, and for the best of them; by default 3 and 40 for
+        each voxel, but at most 15,000 and 160,000.
     ends : int
         How many ends of the chain may let go; with 1 it is the last, and the motion can be made
         within a box (`transform`).
     progress : function, optional
         Told the share of the work done, 0 to 1.
     """
+    trial_rounds = _so_many(TRIAL_ROUNDS, solid) if trial_rounds is None else trial_rounds
+    rounds = _so_many(ROUNDS, solid) if rounds is None else rounds
     for name, value in (("trial_rounds", trial_rounds), ("rounds", rounds)):
         if value < 0:
             raise ValueError(f"{name} must not be negative, got {value}")
@@ -129,7 +133,7 @@ def growth(
     rng = np.random.default_rng(seed)
     grid, body = body_of(solid)
     paths = layered_paths(solid, seed) if paths is None else paths
-    starts = [*_checked_starts(solid, paths), _exposed_bar(solid)]
+    starts = _checked_starts(solid, paths) or [_exposed_bar(solid)]
     target = NEVER if length is None else length
     report = progress or (lambda share: None)
     work = len(starts) * trial_rounds + rounds
@@ -140,7 +144,7 @@ def growth(
         report((k + 1) * trial_rounds / max(work, 1))
         if best is None or fold.worth[0] > best.worth[0]:
             best = fold
-    assert best is not None  # the single bar is always a start
+    assert best is not None  # there is at least one start
     spent = len(starts) * trial_rounds
     _deepen(best, only, rng, rounds, target, lambda done: report((spent + done) / work))
     return folding_of(solid, grid, best, "growth")
@@ -155,6 +159,10 @@ def folding_of(solid: VoxelSolid, grid: Grid, fold: Fold, method: str) -> Foldin
     voxels = grid.xyz[path]
     motion = motion_of(voxels, states_of(fold))
     return Folding(VoxelPath(voxels, dropped=dropped, method=method), motion)
+
+
+def _so_many(rounds: tuple[int, int], solid: VoxelSolid) -> int:
+    return min(rounds[0] * solid.size, rounds[1])
 
 
 def _checked_starts(solid: VoxelSolid, paths: Sequence[VoxelPath]) -> list[IntArray]:
@@ -201,8 +209,9 @@ def _deepen(
     report: Callable[[int], None] = lambda done: None,
 ) -> None:
     """Anneal in batches, with another plan of the same path for each, as far as one is found."""
-    for done in range(0, rounds, BATCH):
-        batch = min(BATCH, rounds - done)
+    longest = max(BATCH, len(fold.cells) // 2)  # a plan costs as much as so many rounds
+    for done in range(0, rounds, longest):
+        batch = min(longest, rounds - done)
         hot, cold = (HOT * (1 - x / rounds) + COLD for x in (done, done + batch))
         anneal(fold, batch, hot, cold, target, rng)
         path = path_of(fold)

@@ -26,8 +26,8 @@ def unfold(path: VoxelPath, method: str = "auto", seed: int = 0, **options: Any)
         `Motion.diameter` and `max_bend_deg`. ``"energy"`` is the paper's Algorithm 4, with options
         `axis` of projection and `steps`: it keeps no width and stops at `stationary` points or
         the step limit; ``"barrier"`` unfolds the same projection with bars of a given `diameter`,
-        over the `axes` in turn, each for at most so many `steps`. ``"auto"`` peels where the accordion cannot, and
-        pulls where peeling cannot if its option `thin` allows thinner bars.
+        over the `axes` in turn, each for at most so many `steps`. ``"auto"`` peels where the
+        accordion cannot, and pulls where peeling cannot if its option `thin` allows thinner bars.
     seed : int
         The same path, seed and options give the same motion.
 
