@@ -9,10 +9,13 @@ that nothing behind a change is touched; every write is logged, so that changes 
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .._jit import kernel
 from ..grid import BoolArray, FloatArray, IntArray
 from ..motion._chain import Grid
+
+Ints = NDArray[np.int64]
 
 NEXT, BACK, RANK, AFTER, BEFORE, TIME, END, AT, ROD, FROM, OTHER, OTHER_ROD, COUNT = range(13)
 """Rows of `Fold.notes`. Of a joint: its neighbours and its label in the path (-1 off it). Of an
@@ -43,11 +46,11 @@ class Fold(NamedTuple):
 
     grid: Grid
     weight: FloatArray  # (C,) worth of a voxel on the path
-    cells: IntArray  # (V,) the cells of the solid
+    cells: Ints  # (V,) the cells of the solid
     free: BoolArray  # (C,) cells of the solid off the path
-    notes: IntArray  # (13, C + S + 1) int64
-    log: IntArray  # (L, 3) int64: row, number and former value of each write since `commit`
-    n_log: IntArray  # (1,)
+    notes: Ints  # (13, C + S + 1)
+    log: Ints  # (L, 3) row, number and former value of each write since `commit`
+    n_log: Ints  # (1,)
     worth: FloatArray  # (1,) sum of the weights on the path
     piece: IntArray  # (C,) scratch: place in the piece being changed, -1 elsewhere
 
