@@ -6,6 +6,7 @@ Each function returns a matplotlib figure; `save` writes it.
 from .animation import animation
 from .decomposition import decomposition
 from .files import save
+from .linkages import depths, projection, two_stages
 from .moments import unfolding
 from .plans import layers, reeb
 from .regions import checkerboard, contraction, merge, planar_steps
@@ -18,12 +19,15 @@ __all__ = [
     "contact_sheet",
     "contraction",
     "decomposition",
+    "depths",
     "layering",
     "layers",
     "merge",
     "planar_steps",
+    "projection",
     "reeb",
     "save",
     "solid",
+    "two_stages",
     "unfolding",
 ]
