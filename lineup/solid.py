@@ -244,8 +244,8 @@ class Certificate:
     extent : (float, float, float)
         Sides, in voxel units and along the motion's own axes, of the smallest box that holds all
         blocks over the whole motion, the blocks unturned: that of the bars' centre lines, and 1
-        more. Up to rounding it is exact, but an upper bound where there are BENDs; nan for a
-        path.
+        more. Up to rounding it is exact, but where there are BENDs it is up to 2e-3 too long;
+        nan for a path.
     violations : int
         Moves that slotted joints do not let the chain make; 0 where they were not asked about.
     """

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from oracles import pose_bend_deg, pose_clearance, sampled_move
+from oracles import pose_bend_deg, pose_clearance, sampled_move, segment_distances
 from polycubes import blob
 from test_judging import boustrophedon, walk
 from test_judging_sampled import chains
@@ -217,7 +217,7 @@ def test_the_poses_between_which_bars_pass_through_one_another_are_good():
 
 def test_what_stays_all_but_at_the_diameter_is_undecided_and_not_for_long():
     verdict = lu.certify(CIRCLING, diameter=1.0)
-    assert verdict.reason.startswith("undecided: bars 0 and 8 may come within 1 near")
+    assert verdict.reason.startswith("undecided: bars 0 and 8 may come within the diameter 1,")
     assert (verdict.where, verdict.moves_checked) == (0, 1)
     assert lu.certify(CIRCLING).reason == "the last pose is off the lattice"
 
@@ -253,6 +253,37 @@ def judged_as_sampled(trial, diameter, samples):
     assert pose_clearance(moved(pose, move, trial, time)) <= verdict.clearance + 1e-4
     assert clearance < diameter + NEAR
     return verdict
+
+
+HALF_TURN = bent(walk("EEE"), Z, [[0] * 3, [2 * QUARTER] * 3])
+
+
+def test_the_box_holds_what_bulges_between_the_poses():
+    assert lu.certify(HALF_TURN).extent == pytest.approx((7, 4, 1), abs=2e-3)
+    assert lu.certify(HALF_TURN, within=(7.01, 4.01, 1)).ok
+    verdict = lu.certify(HALF_TURN, within=(7.01, 3.9, 1))
+    assert verdict.reason.startswith("the blocks reach over 4 along axis 1, more than the 3.9")
+    assert (verdict.ok, verdict.where) == (False, 0)
+
+
+@settings(max_examples=40, deadline=None)
+@given(turnings())
+def test_the_box_agrees_with_sampling(trial):
+    verdict = lu.certify(trial, diameter=1e-6, max_bend_deg=180)
+    poses = np.concatenate(list(lu.frames(trial, substeps=257)))
+    extent, shown = np.ptp(poses, axis=0) + 1, np.array(verdict.extent)
+    assert (extent <= shown + 1e-9).all()
+    assert (shown <= extent + 3e-3).all()  # 2e-3 of the bound, the rest of the samples
+
+
+def test_the_nearest_bars_and_the_most_bent_joint_are_named():
+    verdict = lu.certify(PASSES_THROUGH, diameter=1e-3, max_bend_deg=90)
+    near, a, b = verdict.nearest
+    pose = moved(PASSES_THROUGH.start.astype(float), PASSES_THROUGH.moves[0], PASSES_THROUGH, 0.5)
+    ends = (pose[[k]] for k in (a, a + 1, b, b + 1))
+    assert (near, segment_distances(*ends)[0]) == (0, pytest.approx(0, abs=1e-9))
+    sharp = lu.certify(FAULTS["bend over the limit at the end"][0])
+    assert sharp.most_bent == (0, 1)
 
 
 @settings(max_examples=60, deadline=None)

@@ -28,7 +28,7 @@ Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 
 FINE, TOUCH, UNDECIDED = range(3)
-"""Verdicts on a pair or on all: shown to keep clear, found too near, neither."""
+"""Verdicts on one pair or on all: shown to keep clear, found too near, neither."""
 
 RESOLUTION = 1e-4
 """The clearance shown is never above the smallest distance, and at most this much below it."""
@@ -40,7 +40,6 @@ _LEAF = 4  # bars
 _AXES = np.exp(0.25j * np.pi * np.arange(4))
 _ALL = -1
 _LOW, _HIGH, _FIRST, _LAST = range(4)  # columns of spans: levels, then joints
-_DIAMETER, _ATTAINED, _CLEARANCE = range(3)  # of a tally
 
 
 class Turn(NamedTuple):
@@ -66,23 +65,36 @@ class Turn(NamedTuple):
     sharp: Bools
 
 
+class Tally(NamedTuple):
+    """What the pairs looked at so far have shown; 1 and more are not told apart."""
+
+    diameter: float
+    attained: Floats  # (1,) a distance that two bars came to
+    clearance: Floats  # (1,) one that none went below
+    bars: Ints  # (2,) the pair that lowered it last
+
+
 @kernel
-def approach(turn: Turn, tally: Floats) -> tuple[int, float, int, int]:
+def approach(turn: Turn, diameter: float, clearance: float) -> tuple[int, float, float, int, int]:
     """Prove that bars two or more apart keep the diameter from one another at all times.
 
     Parameters
     ----------
-    tally : (3,) float64
-        The diameter, and two numbers that are brought up to date: a distance that two bars came
-        to, and one that none went below. Both are 1 at first; 1 and more are not told apart.
+    clearance : float
+        At most 1. How far above this the distances are does not matter.
 
     Returns
     -------
     verdict : int
+    clearance : float
+        A distance that no two bars go below, or the one given, if that is less; after `TOUCH` and
+        `UNDECIDED` a distance met. It ends at most `RESOLUTION` below the smallest distance.
     time, bar_a, bar_b : float, int, int
-        Where that is, if it is not `FINE`. What is `UNDECIDED` is so close to the diameter, or so
-        fast, that the intervals given to the proof do not do.
+        After `FINE` the bars are those that lowered the clearance, -1 if none did. Otherwise they
+        are at fault at that time. What is `UNDECIDED` is so close to the diameter, or so fast,
+        that the intervals given to the proof do not do.
     """
+    tally = Tally(diameter, np.ones(1), np.array([clearance]), np.array([-1, -1]))
     n_bars = len(turn.angles)
     powers, spans = _powers(turn), _spans(turn.levels)
     tree = np.empty((len(spans), 3, 4, 2))
@@ -107,14 +119,14 @@ def approach(turn: Turn, tally: Floats) -> tuple[int, float, int, int]:
         if end != begin:
             bar_a, bar_b = pairs[begin]
             if touching:
-                return TOUCH, time, bar_a, bar_b
+                return TOUCH, tally.attained[0], time, bar_a, bar_b
             if halvings == _MOST_HALVINGS:
-                return UNDECIDED, time, bar_a, bar_b
+                break
             intervals.append((halvings + 1, 2 * number + 1, begin, end))
             intervals.append((halvings + 1, 2 * number, begin, end))
         elif not intervals:
-            return FINE, time, -1, -1
-    return UNDECIDED, time, bar_a, bar_b
+            return FINE, tally.clearance[0], time, tally.bars[0], tally.bars[1]
+    return UNDECIDED, tally.attained[0], time, bar_a, bar_b
 
 
 @kernel
@@ -204,7 +216,7 @@ def _sift_all(
     moments: Complexes,
     powers: Floats,
     half: float,
-    tally: Floats,
+    tally: Tally,
     pairs: Ints,
 ) -> tuple[bool, int]:
     """As `_sift` does, for all pairs of bars; the end is `_ALL` if they are too many."""
@@ -246,7 +258,7 @@ def _sift(
     moments: Complexes,
     powers: Floats,
     half: float,
-    tally: Floats,
+    tally: Tally,
 ) -> tuple[bool, int]:
     """Copy those of the pairs first .. last - 1 that stay open to rows last .. end - 1.
 
@@ -296,18 +308,20 @@ def _apart(tree: Floats, spans: Ints, powers: Floats, half: float, i: int, j: in
 
 
 @kernel
-def _verdict(moments: Complexes, powers: Floats, half: float, tally: Floats, a: int, b: int) -> int:
+def _verdict(moments: Complexes, powers: Floats, half: float, tally: Tally, a: int, b: int) -> int:
     """What an interval shows of bars a and b, noted in the tally."""
     direction, distance = _towards(
         moments[a, 0], moments[a + 1, 0], moments[b, 0], moments[b + 1, 0]
     )
-    tally[_ATTAINED] = min(tally[_ATTAINED], distance)
-    if distance < tally[_DIAMETER] - _ROUNDING:
+    tally.attained[0] = min(tally.attained[0], distance)
+    if distance < tally.diameter - _ROUNDING:
         return TOUCH
     shown = _ROUNDING + _lower_bound(moments, powers, half, direction, a, b)
-    if shown < max(tally[_DIAMETER], tally[_ATTAINED] - RESOLUTION):
+    if shown < max(tally.diameter, min(tally.clearance[0], tally.attained[0] - RESOLUTION)):
         return UNDECIDED
-    tally[_CLEARANCE] = min(tally[_CLEARANCE], shown)
+    if shown < tally.clearance[0]:
+        tally.clearance[0] = shown
+        tally.bars[:] = a, b
     return FINE
 
 

@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 from .. import grid
 from ..kinematics import QUARTER, TICK
 from ..solid import Motion
-from ._approach import FINE, TOUCH, Turn, approach
+from ._approach import Turn
+from ._reach import reach
 
 _HALF_TURN, _TURN = 2 * QUARTER, 4 * QUARTER
 _DEGREES = 360.0 / _TURN
-_LOOKS = 64  # at each move, for the room that it takes
 
 
 class Lying(NamedTuple):
@@ -33,6 +33,10 @@ class Lying(NamedTuple):
 
     def at(self, angles: grid.IntArray) -> "Lying":
         return Lying(self.axis, self.along, angles.astype(np.int64))
+
+    def levels(self) -> NDArray[np.int64]:
+        """Where the joints are along the axis, from joint 0 on."""
+        return np.concatenate([[0], self.along.cumsum()])
 
     def bars(self) -> NDArray[np.int64] | None:
         """Lattice steps of the bars; None off the lattice."""
@@ -97,43 +101,21 @@ def sharpest_bends(before: Lying, after: Lying) -> NDArray[np.float64]:
     return np.pad(_DEGREES * ticks, 1)
 
 
-def reach(before: Lying, after: Lying) -> NDArray[np.float64]:
-    """A box (2, 3), lowest and highest, that holds the joints during a BEND, seen from joint 0.
-
-    Between the poses looked at no joint goes further than all bars together turn in that time.
-    """
-    u, v, across = (before.axis + 1) % 3, (before.axis + 2) % 3, before.along == 0
-    bars = np.zeros((_LOOKS + 1, len(across), 3))
-    bars[..., before.axis] = before.along
-    angles = TICK * np.linspace(before.angles, after.angles, _LOOKS + 1)[:, across]
-    bars[:, across, u], bars[:, across, v] = np.cos(angles), np.sin(angles)
-    joints = bars.cumsum(axis=1)
-    low, high = joints.min(axis=(0, 1)), joints.max(axis=(0, 1))
-    between = TICK * np.abs(after.angles - before.angles).sum() / (2 * _LOOKS)
-    margin = between * (np.arange(3) != before.axis)
-    return np.stack([np.minimum(low - margin, 0), np.maximum(high + margin, 0)])
-
-
-def approached(
-    before: Lying, after: Lying, bends_deg: NDArray[np.float64], tally: NDArray[np.float64]
-) -> tuple[str, float]:
-    """What is wrong with the distances during a BEND, "" if nothing; and how near bars come.
-
-    `bends_deg` are its sharpest bends, and `tally` what `approach` asks for, kept from one BEND
-    of a motion to the next.
-    """
-    turn = Turn(
+def turning(before: Lying, after: Lying, bends_deg: NDArray[np.float64]) -> Turn:
+    """A BEND whose sharpest bends are known, as the kernels take it."""
+    return Turn(
         TICK * before.angles.astype(np.float64),
         TICK * (after.angles - before.angles).astype(np.float64),
         before.along == 0,
-        np.concatenate([[0], before.along.cumsum()]),
+        before.levels(),
         bends_deg > 90,
     )
-    verdict, time, a, b = approach(turn, tally)
-    diameter, attained, clearance = (float(x) for x in tally)
-    if verdict == FINE:
-        return "", clearance
-    if verdict == TOUCH:
-        fault = f"bars {a} and {b} come within {attained:.6g}, less than the diameter {diameter:g},"
-        return f"{fault} at {time:.6g}", attained
-    return f"undecided: bars {a} and {b} may come within {diameter:g} near {time:.6g}", attained
+
+
+def box(first: NDArray[np.int64], axis: int, turn: Turn) -> NDArray[np.float64]:
+    """Lowest and highest positions, (2, 3), of the joints, or up to 1e-3 more; joint 0 rests."""
+    sides = np.empty((2, 3))
+    sides[:, axis] = turn.levels.min(), turn.levels.max()
+    sides[:, [(axis + 1) % 3, (axis + 2) % 3]] = reach(turn)
+    moved_on: NDArray[np.float64] = first + sides
+    return moved_on

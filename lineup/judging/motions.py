@@ -10,6 +10,7 @@ from ..joints import JOINTS, slot_violations
 from ..kinematics import Move
 from ..solid import Certificate, Motion, Obstacles
 from . import _bends, _obstacles, _pulls, _turns
+from ._approach import FINE, TOUCH, approach
 from ._lattice import congruent, largest_bend, not_simple
 from ._tilts import malformed_tilt, not_monotone, tilt_box
 
@@ -148,7 +149,6 @@ class _Trial:
         self.box = np.full((2, 3), np.nan)  # lowest and highest positions met
         self.was_straight = False
         self.lying: _bends.Lying | None = None  # the pose, while it is off the lattice
-        self.tally = np.array([diameter, 1.0, 1.0])  # of the bends, see `_approach.approach`
         self.checked = 0
 
     def verdict(self) -> Certificate:
@@ -235,14 +235,15 @@ class _Trial:
         while self.checked < len(self.motion):
             where = self.checked
             move = self.motion.moves[where]
-            if self.lying is not None and move[0] != Move.BEND:
-                return self._refuse(f"malformed: {_named(move)} starts off the lattice", where)
             if move[0] not in judges:
                 self.checked += 1
                 return self._refuse(f"malformed: {_named(move)} is of no known kind", where)
             if self.obstacles is not None and move[0] != Move.PULL:
                 self.checked += 1
                 return self._refuse(f"{_named(move)} is not judged beside obstacles", where)
+            if self.lying is not None and move[0] != Move.BEND:
+                self.checked += 1
+                return self._refuse(f"malformed: {_named(move)} starts off the lattice", where)
             refused = judges[move[0]]() or self._outgrown(self.checked - 1)
             if refused:
                 return refused
@@ -369,12 +370,17 @@ class _Trial:
         self._note_bend(float(bends_deg[joint]), where, joint)
         if bends_deg[joint] > self.max_bend_deg:
             return self._refuse(f"bend of {bends_deg[joint]:g} degrees at joint {joint}", where)
-        reason, clearance = _bends.approached(before, after, bends_deg, self.tally)
-        if clearance < self.clearance and len(self.pose) > 3:
-            self.clearance, self.nearest = clearance, (where, -1, -1)
-        if reason:
-            return self._refuse(f"{reason} of {_named(move)}", where)
-        self._widen(self.pose[0] + _bends.reach(before, after))
+        turn = _bends.turning(before, after, bends_deg)
+        self._widen(_bends.box(self.pose[0], axis, turn))
+        verdict, near, time, a, b = approach(turn, self.diameter, min(1.0, self.clearance))
+        if near < self.clearance and len(self.pose) > 3:
+            self.clearance, self.nearest = near, (where, a, b)
+        if verdict != FINE:
+            told = f"bars {a} and {b} come within {near:.6g}, less than"
+            if verdict != TOUCH:
+                told = f"undecided: bars {a} and {b} may come within"
+            told = f"{told} the diameter {self.diameter:g}"
+            return self._refuse(f"{told}, at {time:.6g} of {_named(move)}", where)
         bars = after.bars()
         self.lying = after if bars is None else None
         if bars is not None:
