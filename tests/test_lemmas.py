@@ -33,7 +33,7 @@ def single(start, row, poses=((),)):
     )
 
 
-def sampled(start, row, poses=((),), samples=25):
+def sampled(start, row, poses=((),), samples=17):
     """Least distance of bars two or more apart, and largest bend, during one move."""
     trial = single(start, row, poses)
     return sampled_move(trial, start.astype(float), trial.moves[0], samples=samples)
@@ -47,13 +47,13 @@ def taken(voxels):
 
 
 @given(paths())
-@settings(max_examples=40)
+@settings(max_examples=25)
 def test_a_lattice_pose_has_clearance_one(pose):
     assert pose_clearance(pose.astype(float)) == 1
 
 
 @given(st.integers(0, 2**32 - 1))
-@settings(max_examples=40)
+@settings(max_examples=25)
 def test_bars_beside_a_bar_keep_its_length_apart_where_no_bend_exceeds_90(seed):
     u, v, w = np.random.default_rng(seed).normal(size=(3, 200, 3))
     u, v, w = (x / np.linalg.norm(x, axis=1)[:, None] for x in (u, v, w))
@@ -76,7 +76,7 @@ def pulls(pose, without_us=False):
 
 
 @given(walks(without_us=True), st.data())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 def test_a_pull_without_a_u_keeps_its_clearance_and_bend(start, data):
     rows = pulls(start, without_us=True)
     assume(rows)
@@ -86,7 +86,7 @@ def test_a_pull_without_a_u_keeps_its_clearance_and_bend(start, data):
 
 
 @given(paths(), st.data())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 def test_a_pull_of_any_simple_path_keeps_its_clearance_and_bend(start, data):
     rows = pulls(start)
     assume(rows)
@@ -135,7 +135,7 @@ def tilted(bars, towards):
 
 
 @given(walks(max_bars=20), st.integers(0, 5))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 def test_a_tilt_of_a_monotone_path_brings_no_two_points_nearer(start, against):
     # What is left of a walk without its steps against one direction is monotone, hence simple.
     bars = grid.bar_directions(start)
@@ -170,7 +170,7 @@ def cosines(pose):
 
 
 @given(walks(max_bars=12), st.integers(0, 5))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 def test_a_tilt_of_a_path_that_is_not_monotone_ends_bent_back(start, towards):
     bars = grid.bar_directions(start)
     against = bars == (towards + 3) % 6
@@ -235,7 +235,7 @@ def is_free(clearance, bend_deg):
 
 
 @given(rods(0), st.data())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 def test_a_peel_is_free_of_collisions_exactly_where_its_box_is(start, data):
     last, b = len(start) - 1, straight_tail(start)
     d = int(grid.bar_directions(start)[-1])
@@ -246,7 +246,7 @@ def test_a_peel_is_free_of_collisions_exactly_where_its_box_is(start, data):
 
 
 @given(rods(1), st.data())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 def test_a_swing_is_free_of_collisions_exactly_where_its_sector_is(start, data):
     b = data.draw(st.integers(straight_tail(start), len(start) - 2))
     d = int(grid.bar_directions(start)[-1])
@@ -321,7 +321,7 @@ def limbs(draw):
 
 
 @given(limbs())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 def test_a_door_whose_rings_are_free_keeps_clear(limb):
     start, row = limb
     assert row in list(doors(start))
@@ -355,7 +355,7 @@ def quarter_turns(pose):
 
 
 @given(paths(), st.data())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 def test_a_quarter_turn_bends_most_at_its_two_ends(start, data):
     row = data.draw(st.sampled_from(list(quarter_turns(start))))
     before, after = pose_bend_deg(start), pose_bend_deg(turned(start, row))
@@ -363,7 +363,7 @@ def test_a_quarter_turn_bends_most_at_its_two_ends(start, data):
 
 
 @given(paths(), st.data())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 def test_in_a_quarter_turn_only_bars_that_share_a_height_come_nearer_than_one(start, data):
     row = data.draw(st.sampled_from(list(quarter_turns(start))))
     trial = single(start, row)
