@@ -5,9 +5,9 @@ from dataclasses import replace as with_changes
 import numpy as np
 import pytest
 from contracts import check_folding
+from hostile import KINDS, hostile
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from hostile import KINDS, hostile
 from oracles import rod_fault
 from polycubes import polycubes
 

@@ -71,7 +71,7 @@ def fill(fold: Fold, tries: int, target: int, rng: Generator) -> None:
     """Climb over all holes."""
     holes = no_holes(len(fold.free), len(fold.cells))
     for cell in np.flatnonzero(fold.free):
-        add_hole(holes, cell)
+        add_hole(holes, int(cell))
     for _ in range(0, tries, FILLING):
         climb(fold, holes, FILLING, target, rng)
         commit(fold)
@@ -241,7 +241,7 @@ def _reroute(fold: Fold, near: Holes, rng: Generator) -> bool:
         return False
     clear_holes(near)
     for cell in old:
-        _note_holes(fold, near, cell)
+        _note_holes(fold, near, int(cell))
     _note_holes(fold, near, hole)
     return True
 
