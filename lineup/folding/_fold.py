@@ -15,8 +15,6 @@ from .._jit import kernel
 from ..grid import BoolArray, FloatArray, IntArray
 from ..motion._chain import Grid
 
-Ints = NDArray[np.int64]
-
 NEXT, BACK, RANK, AFTER, BEFORE, TIME, END, AT, ROD, FROM, OTHER, OTHER_ROD, COUNT = range(13)
 """Rows of `Fold.notes`. Of a joint: its neighbours and its label in the path (-1 off it). Of an
 event: its neighbours and its label in the plan (`NEVER` if it is in none), the end that moves,
@@ -29,6 +27,9 @@ again (-1: none), and whether labels ran out of gaps."""
 
 NEVER = 1 << 62
 SPACING = 1 << 40
+
+
+Longs = NDArray[np.int64]
 
 
 class Body(NamedTuple):
@@ -46,11 +47,11 @@ class Fold(NamedTuple):
 
     grid: Grid
     weight: FloatArray  # (C,) worth of a voxel on the path
-    cells: Ints  # (V,) the cells of the solid
+    cells: IntArray  # (V,) the cells of the solid
     free: BoolArray  # (C,) cells of the solid off the path
-    notes: Ints  # (13, C + S + 1)
-    log: Ints  # (L, 3) row, number and former value of each write since `commit`
-    n_log: Ints  # (1,)
+    notes: Longs  # (13, C + S + 1)
+    log: Longs  # (L, 3): row, number and former value of each write since `commit`
+    n_log: Longs  # (1,)
     worth: FloatArray  # (1,) sum of the weights on the path
     piece: IntArray  # (C,) scratch: place in the piece being changed, -1 elsewhere
 
@@ -58,7 +59,7 @@ class Fold(NamedTuple):
 @kernel
 def new_fold(grid: Grid, body: Body, path: IntArray, states: IntArray) -> Fold:
     """The fold of a path (cells) and its plan (states, see `motion._search`)."""
-    cells = np.flatnonzero(body.solid)
+    cells = np.flatnonzero(body.solid).astype(np.int32)
     n_numbers = len(body.solid) + 4 * len(cells) + 401
     notes = np.full((13, n_numbers), -1, np.int64)
     notes[TIME] = NEVER

@@ -28,7 +28,7 @@ from ._fold import (
     SLOTS,
     TIME,
     Fold,
-    Ints,
+    Longs,
     cancel_events,
     end_after,
     label_step,
@@ -211,7 +211,7 @@ def _in_quadrant(p: IntArray, q: IntArray, d: int, f: int) -> bool:
 
 
 @kernel
-def _plan_piece(fold: Fold, span: Span, piece: Ints) -> Ints:
+def _plan_piece(fold: Fold, span: Span, piece: Longs) -> Longs:
     """States (R, 2) of place in the piece and rod direction, from its entry to its exit.
 
     Fewest swings first, at most MAX_SWINGS; empty if there is no way.
@@ -219,7 +219,7 @@ def _plan_piece(fold: Fold, span: Span, piece: Ints) -> Ints:
     is_open = span.goal < 0
     goal_place = len(piece) - 1 - int(is_open)
     if goal_place < int(is_open):
-        return np.full((goal_place + 1, 2), 0)
+        return np.zeros((goal_place + 1, 2), np.int64)
     fold.piece[piece] = np.arange(len(piece))
     parent = np.full(6 * len(piece), -2, np.int32)
     level = np.empty(6 * len(piece), np.int32)
@@ -247,7 +247,7 @@ def _plan_piece(fold: Fold, span: Span, piece: Ints) -> Ints:
 def _peel_on(
     fold: Fold,
     span: Span,
-    piece: Ints,
+    piece: Longs,
     goal: int,
     parent: IntArray,
     level: IntArray,
@@ -270,7 +270,7 @@ def _peel_on(
 
 @kernel
 def _swing_all(
-    fold: Fold, span: Span, piece: Ints, parent: IntArray, level: IntArray, n_level: int
+    fold: Fold, span: Span, piece: Longs, parent: IntArray, level: IntArray, n_level: int
 ) -> tuple[IntArray, int]:
     """The level that one more swing reaches."""
     following = np.empty(len(level), np.int32)
@@ -289,7 +289,7 @@ def _swing_all(
 
 
 @kernel
-def _route(parent: IntArray, goal: int) -> Ints:
+def _route(parent: IntArray, goal: int) -> Longs:
     length = 0
     node = goal
     while node >= 0:
@@ -342,7 +342,7 @@ def _clear_quadrant(fold: Fold, span: Span, start: int, d: int, f: int, place: i
 
 
 @kernel
-def _add_events(fold: Fold, span: Span, piece: Ints, route: Ints) -> None:
+def _add_events(fold: Fold, span: Span, piece: Longs, route: Longs) -> None:
     """Put the events of a route into the gap of a span."""
     begin = 0 if span.rod < 0 else 1
     stop = begin if span.goal < 0 and len(route) == 1 else len(route)

@@ -24,7 +24,7 @@ def peel_plan(
     rng: np.random.Generator,
     *,
     starts: IntArray | None = None,
-    budget: int = 100_000,
+    budget: int | None = None,
     patience: int = 5_000,
     bias: float = 0.02,
     only: int = BOTH_ENDS,
@@ -36,6 +36,7 @@ def peel_plan(
     if starts is None:
         directions = np.stack(np.divmod(np.arange(36), 6), axis=1)
         starts = np.hstack([np.tile([0, len(cells) - 1], (36, 1)), directions])
+    budget = max(100_000, 4 * len(cells)) if budget is None else budget
     chain = link(grid, np.ascontiguousarray(cells, np.int32))
     return search(grid, chain, starts.astype(np.int32), budget, patience, bias, only, rng)
 
