@@ -6,8 +6,10 @@ from typing import Any
 from .._options import checked
 from ..solid import Motion, VoxelPath
 from .accordion import accordion
+from .algorithm4 import energy
 from .peel import peel
 from .pulling import pull
+from .thick import barrier
 
 
 def unfold(path: VoxelPath, method: str = "auto", seed: int = 0, **options: Any) -> Motion:
@@ -19,8 +21,11 @@ def unfold(path: VoxelPath, method: str = "auto", seed: int = 0, **options: Any)
         A key of `MOTION_METHODS`. ``"accordion"`` straightens a monotone path in one move;
         ``"peel"`` searches for an order in which the two ends let go of bar after bar, with
         options `tries` and `patience`; ``"pull"`` draws the chain out along its own track, for
-        thinner bars, see `Motion.diameter` and `max_bend_deg`; ``"auto"`` peels where the
-        accordion cannot.
+        thinner bars, see `Motion.diameter` and `max_bend_deg`; ``"energy"`` is the paper's
+        Algorithm 4, with options `axis` of projection and `steps`: it keeps no width and stops
+        at `stationary` points or the step limit; ``"barrier"`` unfolds the same projection with
+        bars of a given `diameter`, over the `axes` in turn, each for at most so many `steps`;
+        ``"auto"`` peels where the accordion cannot.
     seed : int
         The same path, seed and options give the same motion.
 
@@ -58,6 +63,8 @@ MOTION_METHODS: dict[str, Callable[..., Motion]] = {
     "accordion": accordion,
     "peel": peel,
     "pull": pull,
+    "energy": energy,
+    "barrier": barrier,
     "auto": _auto,
 }
 """The planners of a motion by name: functions of a path, a seed and keyword-only options."""
