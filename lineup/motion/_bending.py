@@ -1,4 +1,4 @@
-"""From the angles of a linkage to a motion: the last straight way, thinning, BEND and TILT moves."""
+"""From angles of a linkage to a motion: the last straight way, thinning, BEND and TILT moves."""
 
 from dataclasses import dataclass
 
@@ -48,7 +48,8 @@ class Keyframes:
 
     def add(self, row: IntArray, diameter: float) -> None:
         """Note a row; bars have kept `diameter` up to it."""
-        self.waiting.append(row)
+        if (row != self.waiting[-1]).any():
+            self.waiting.append(row)
         if len(self.waiting) > BATCH:
             self._thin(diameter)
 
@@ -87,7 +88,8 @@ def line_ahead(linkage: Linkage, row: IntArray, diameter: float) -> IntArray | N
     if (turns[linkage.corners] != turns[linkage.corners + 1]).any():
         return None
     target = (QUARTER * (4 * turns + np.rint(ahead / QUARTER))).astype(np.int32)
-    return target if passes(linkage, row, target, diameter) else None
+    there = (row == target).all()
+    return target if there or passes(linkage, row, target, diameter) else None
 
 
 @kernel

@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..grid import FloatArray
+from ..grid import FloatArray, IntArray
 from ._bending import Keyframes, Run, line_ahead, ticks
 from ._linkage import Linkage, clearance, placed, radians, straightness
 from ._safety import safe_share
@@ -23,7 +23,7 @@ STATIONARY = 1e-8
 """A gradient smaller than this share of the objective is none."""
 
 LOOK_AHEAD = 10
-"""Steps between two looks at the direct way to the line."""
+"""Steps between two looks at the direct way to the line; later, a tenth of those made."""
 
 SLACK = 0.01
 """How much nearer than in the steps bars may come where steps are left out."""
@@ -62,16 +62,17 @@ class Descent:
 
     def run(self, steps: int) -> Run:
         """At most so many steps, and why they end."""
-        reason = "straight"
+        reason, next_look = "straight", 0
         for done in range(steps + 1):
             floor = max(self.diameter, self.reached - SLACK)
-            row = ticks(self.angles, self.linkage.corners, self.max_bend or np.iinfo(np.int32).max)
-            if done:
-                self.frames.add(row, floor)
-            line = line_ahead(self.linkage, row, floor) if done % LOOK_AHEAD == 0 else None
-            if line is not None:
-                self.frames.add(line, floor)
-                break
+            row = self._row()
+            self.frames.add(row, floor)
+            if done >= next_look or done == steps:
+                next_look = done + max(LOOK_AHEAD, done // LOOK_AHEAD)
+                line = line_ahead(self.linkage, row, floor)
+                if line is not None:
+                    self.frames.add(line, floor)
+                    break
             if done == steps:
                 reason = "step limit"
             elif self._stationary() or not self._step():
@@ -81,6 +82,10 @@ class Descent:
                 reason += f" after {done} steps at straightness {far:.2f}"
                 break
         return Run(self.frames.rows(floor), reason, done, self.value)
+
+    def _row(self) -> IntArray:
+        most = np.iinfo(np.int32).max if self.max_bend is None else self.max_bend
+        return ticks(self.angles, self.linkage.corners, most)
 
     def _stationary(self) -> bool:
         steepest = np.abs(self.gradient).max(initial=0)

@@ -32,7 +32,7 @@ class Linkage(NamedTuple):
 def project(voxels: IntArray, axis: int) -> Linkage:
     """The linkage of a lattice path (P, 3) seen along `axis`."""
     bars = bar_directions(voxels).astype(np.int32)
-    across = np.flatnonzero(bars % 3 != axis)
+    across = np.flatnonzero(bars % 3 != axis).astype(np.int32)
     quarters = (bars[across] % 3 - axis - 1) % 3 + 2 * (bars[across] // 3)
     turns = (np.diff(quarters) + 2) % 4 - 2
     start = QUARTER * np.concatenate([quarters[:1], turns]).cumsum()
@@ -40,7 +40,7 @@ def project(voxels: IntArray, axis: int) -> Linkage:
     corners = np.flatnonzero(np.diff(across) == 1)
     return Linkage(
         axis,
-        across.astype(np.int32),
+        across,
         start.astype(np.int32),
         pairs,
         n_apart,
@@ -72,12 +72,15 @@ def _pairs(depth: IntArray, across: IntArray) -> tuple[IntArray, int]:
 
 def radians(ticks: IntArray) -> FloatArray:
     """Angles as kernels take them."""
-    return TICK * ticks
+    angles: FloatArray = TICK * ticks.astype(np.float64)
+    return angles
 
 
 def straightness(place: FloatArray) -> float:
     """Distance of the ends as a share of the linkage's length; 1 for a line."""
-    return float(np.hypot(*(place[-1] - place[0])) / max(len(place) - 1, 1))
+    if len(place) == 1:
+        return 1.0
+    return float(np.hypot(*(place[-1] - place[0])) / (len(place) - 1))
 
 
 def largest_bend(linkage: Linkage, ticks: IntArray) -> float:
@@ -121,7 +124,7 @@ def clearance(linkage: Linkage, place: FloatArray) -> float:
     """Least distance of the pairs that the bends do not decide."""
     least = np.inf
     for k in range(linkage.n_apart):
-        p, q, r = linkage.pairs[k]
+        p, q, r = linkage.pairs[k, 0], linkage.pairs[k, 1], linkage.pairs[k, 2]
         t = share_along(place, p, q, r)
         x = place[p, 0] - (1 - t) * place[q, 0] - t * place[r, 0]
         y = place[p, 1] - (1 - t) * place[q, 1] - t * place[r, 1]

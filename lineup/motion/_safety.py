@@ -5,11 +5,13 @@ from another gives |R| <= t^2/2 (|A| + S/3) for t <= 1, where A is the differenc
 derivatives at 0 and S the sum of |w_b|^3 over the bars between them.
 """
 
+from itertools import pairwise
+
 import numpy as np
 
 from .._jit import kernel
 from ..grid import FloatArray, IntArray
-from ._linkage import Linkage, clearance, placed, radians, share_along
+from ._linkage import Linkage, clearance, placed, radians
 
 ROUNDS = 40
 """Times that the direction in which a pair is kept apart is chosen anew."""
@@ -37,10 +39,10 @@ def passes(
     return False
 
 
-def least_clearance(linkage: Linkage, rows: IntArray, tolerance: float = 1e-3) -> float:
+def least_clearance(linkage: Linkage, rows: IntArray, tolerance: float = 5e-4) -> float:
     """A distance that bars keep while the angles pass through `rows`, low by about `tolerance`."""
     least = clearance(linkage, placed(radians(rows[0]))) - tolerance
-    for before, after in zip(rows[:-1], rows[1:], strict=True):
+    for before, after in pairwise(rows):
         angles, turn, t = radians(before), radians(after - before), 0.0
         while t < 1.0:
             share = safe_share(linkage, angles + t * turn, (1 - t) * turn, least)
@@ -52,21 +54,20 @@ def least_clearance(linkage: Linkage, rows: IntArray, tolerance: float = 1e-3) -
 
 
 @kernel
-def safe_share(
-    linkage: Linkage, angles: FloatArray, turn: FloatArray, diameter: float
-) -> float:
+def safe_share(linkage: Linkage, angles: FloatArray, turn: FloatArray, diameter: float) -> float:
     """A share of `turn`, up to 1, in which no pair comes nearer than `diameter`."""
     turn = turn - turn.mean()  # as seen by who turns along: distances stay the same
     place = placed(angles)
     speed, second, third = _derivatives(angles, turn)
-    reach = _reach(speed, second, third)
     safe = 1.0
     for k in range(linkage.n_apart):
-        p, q, r = linkage.pairs[k]
+        p, q, r = linkage.pairs[k, 0], linkage.pairs[k, 1], linkage.pairs[k, 2]
         x, y = place[p, 0] - place[q, 0], place[p, 1] - place[q, 1]
-        far = diameter + (r - q) + reach[p] + max(reach[q], reach[r])
-        if x * x + y * y < far * far:
-            bound = max(_bound(second, third, p, q), _bound(second, third, p, r))
+        bound = _bound(second, third, p, q)
+        vx, vy = speed[p, 0] - speed[q, 0], speed[p, 1] - speed[q, 1]
+        reach = diameter + (r - q) + safe * (np.sqrt(vx * vx + vy * vy) + safe * bound / 2)
+        if x * x + y * y < reach * reach:
+            bound = max(bound, _bound(second, third, p, r))
             safe = _advance(place, speed, p, q, r, bound, diameter, safe)
             if safe <= 0.0:
                 return 0.0
@@ -74,9 +75,7 @@ def safe_share(
 
 
 @kernel
-def _derivatives(
-    angles: FloatArray, turn: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _derivatives(angles: FloatArray, turn: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """First and second derivative of each joint (m + 1, 2), and bounds of the third, summed."""
     m = len(angles)
     speed, second, third = np.zeros((m + 1, 2)), np.zeros((m + 1, 2)), np.zeros(m + 1)
@@ -91,22 +90,10 @@ def _derivatives(
 
 
 @kernel
-def _reach(speed: FloatArray, second: FloatArray, third: FloatArray) -> FloatArray:
-    """How far each joint goes at most, as seen from the middle of all, within t <= 1."""
-    reach = np.empty(len(third))
-    vx, vy = speed[:, 0].mean(), speed[:, 1].mean()
-    ax, ay = second[:, 0].mean(), second[:, 1].mean()
-    for k in range(len(third)):
-        first = np.hypot(speed[k, 0] - vx, speed[k, 1] - vy)
-        reach[k] = first + np.hypot(second[k, 0] - ax, second[k, 1] - ay) / 2 + third[-1] / 12
-    return reach
-
-
-@kernel
 def _bound(second: FloatArray, third: FloatArray, p: int, q: int) -> float:
     """The factor of t^2/2 that bounds how far joint p, seen from q, leaves its tangent."""
-    bend = np.hypot(second[p, 0] - second[q, 0], second[p, 1] - second[q, 1])
-    return bend + abs(third[p] - third[q]) / 3
+    x, y = second[p, 0] - second[q, 0], second[p, 1] - second[q, 1]
+    return np.sqrt(x * x + y * y) + abs(third[p] - third[q]) / 3
 
 
 @kernel
@@ -136,7 +123,7 @@ def _advance(
         length = bx * bx + by * by
         along = 0.0 if length == 0.0 else min(max((ux * bx + uy * by) / length, 0.0), 1.0)
         nx, ny = ux - along * bx, uy - along * by
-        distance = np.hypot(nx, ny)
+        distance = np.sqrt(nx * nx + ny * ny)
         if distance - bound * t * t / 2 <= diameter:
             return t
         nx /= distance

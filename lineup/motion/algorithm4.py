@@ -53,7 +53,7 @@ def elliptic_energy(linkage: Linkage, place: FloatArray) -> tuple[float, FloatAr
     """Sum of 1 / (|pq| + |pr| - |qr|)^2 over all pairs, and its derivative by the joints."""
     energy, slope = 0.0, np.zeros(place.shape)
     for k in range(len(linkage.pairs)):
-        p, q, r = linkage.pairs[k]
+        p, q, r = linkage.pairs[k, 0], linkage.pairs[k, 1], linkage.pairs[k, 2]
         ax, ay = place[p, 0] - place[q, 0], place[p, 1] - place[q, 1]
         bx, by = place[p, 0] - place[r, 0], place[p, 1] - place[r, 1]
         a, b = np.sqrt(ax * ax + ay * ay), np.sqrt(bx * bx + by * by)

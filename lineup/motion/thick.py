@@ -27,6 +27,9 @@ STIFFNESS = 0.2
 
 MEMORY = 12
 
+TINY = 1e-9
+"""The spread of a single joint, where there is no bar across the axis."""
+
 
 def barrier(
     path: VoxelPath,
@@ -73,7 +76,7 @@ def barrier_descent(linkage: Linkage, diameter: float) -> Descent:
         if value == np.inf:
             return value, angles
         offset = place - place.mean(axis=0)
-        spread, m = (offset * offset).sum(), max(len(angles), 1)
+        spread, m = max((offset * offset).sum(), TINY), max(len(angles), 1)
         value -= m * np.log(spread / m)
         gradient = torques(angles, slope - 2 * m * offset / spread)
         return value + bend_barrier(linkage, angles, limit, gradient), gradient
@@ -88,7 +91,7 @@ def contact_barrier(
     """Sum of -(1 - x)^2 log x over pairs at distance diameter + x NEAR, x < 1, and derivative."""
     value, slope = 0.0, np.zeros(place.shape)
     for k in range(linkage.n_apart):
-        p, q, r = linkage.pairs[k]
+        p, q, r = linkage.pairs[k, 0], linkage.pairs[k, 1], linkage.pairs[k, 2]
         x, y = place[p, 0] - place[q, 0], place[p, 1] - place[q, 1]
         far = diameter + NEAR + (r - q)
         if x * x + y * y < far * far:
@@ -110,9 +113,7 @@ def contact_barrier(
 
 
 @kernel
-def bend_barrier(
-    linkage: Linkage, angles: FloatArray, limit: float, gradient: FloatArray
-) -> float:
+def bend_barrier(linkage: Linkage, angles: FloatArray, limit: float, gradient: FloatArray) -> float:
     """The same for bends at limit - x SHARP; its derivative is added to `gradient`."""
     value = 0.0
     for b in linkage.corners:
