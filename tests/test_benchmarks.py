@@ -14,12 +14,13 @@ import lineup as lu
 
 sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))
 
+import motion
 import paths
 import peers
 
 
-def run(*arguments):
-    result = CliRunner().invoke(paths.app, [str(a) for a in arguments])
+def run(*arguments, app=paths.app):
+    result = CliRunner().invoke(app, [str(a) for a in arguments])
     assert result.exit_code == 0, result.output
     return result.output
 
@@ -60,6 +61,18 @@ def test_coverage_on_a_tiny_solid(tmp_path):
     assert medians["models"].tolist() == [1] * 4
     assert medians["refused"].tolist() == [0] * 4
     assert medians["median_coverage"].tolist() == table["coverage"].tolist()
+
+
+def test_motions_on_a_tiny_solid(tmp_path):
+    run("--solid", "duck", "--voxels", 60, "--steps", 20, "--out", tmp_path, app=motion.app)
+    table = pd.read_csv(tmp_path / "motion.csv").set_index("method")
+    assert table.index.tolist() == ["energy", "barrier", "peel", "growth"]
+    assert table.loc["growth", ["certified", "end"]].tolist() == [True, "straight"]
+    assert (table["paper_hours"] == 24).all()
+    assert (table["seconds_per_step"] * table["steps"].clip(1)).tolist() == pytest.approx(
+        table["seconds"].tolist()
+    )
+    assert (tmp_path / "motion.png").stat().st_size > 1000
 
 
 def test_a_slow_method_ends(tmp_path):

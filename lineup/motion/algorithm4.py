@@ -26,6 +26,11 @@ def energy(path: VoxelPath, seed: int, *, axis: int = 1, steps: int = 5_000) -> 
     moves turn out to keep.
     """
     del seed  # nothing is drawn
+    return energy_run(path, axis, steps)[0]
+
+
+def energy_run(path: VoxelPath, axis: int, steps: int) -> tuple[Motion, int]:
+    """The same, and the number of steps made."""
     if axis not in (0, 1, 2):
         raise ValueError(f"axis must be 0, 1 or 2, got {axis}")
     if steps < 0:
@@ -35,7 +40,8 @@ def energy(path: VoxelPath, seed: int, *, axis: int = 1, steps: int = 5_000) -> 
     bend_deg = largest_bend(linkage, run.rows)
     beside = np.cos(np.radians(max(bend_deg - 90, 0)))  # bars 0 and 2 of a sharp bend
     diameter = min(DIAMETER, float(beside), least_clearance(linkage, run.rows))
-    return bend_motion(path.voxels, linkage, run, diameter, max(MAX_BEND_DEG, bend_deg))
+    motion = bend_motion(path.voxels, linkage, run, diameter, max(MAX_BEND_DEG, bend_deg))
+    return motion, run.steps
 
 
 def energy_descent(linkage: Linkage) -> Descent:

@@ -45,25 +45,30 @@ def barrier(
     surely keeps `diameter` between bars, and bends of at most 90 degrees.
     """
     del seed  # nothing is drawn
+    return barrier_run(path, diameter, axes, steps)[0]
+
+
+def barrier_run(
+    path: VoxelPath, diameter: float, axes: tuple[int, ...], steps: int
+) -> tuple[Motion, int]:
+    """The same, and the number of steps made along all axes tried."""
     if not 0 < diameter < 1:
         raise ValueError(f"diameter must be above 0 and below 1, got {diameter}")
     if not axes or not set(axes) <= {0, 1, 2}:
         raise ValueError(f"axes must be some of 0, 1 and 2, got {axes}")
     if steps < 0:
         raise ValueError(f"steps must be at least 0, got {steps}")
-    best, furthest = None, -1.0
+    motions, far, n_steps = [], [], 0
     for axis in axes:
         linkage = project(path.voxels, axis)
         descent = barrier_descent(linkage, diameter)
         run = descent.run(steps)
-        far = 2.0 if run.reason == "straight" else straightness(placed(descent.angles))
-        if far > furthest:
-            best = bend_motion(path.voxels, linkage, run, diameter, MAX_BEND_DEG)
-            furthest = far
-        if best is not None and best.straight:
-            break
-    assert best is not None  # there is at least one axis
-    return best
+        n_steps += run.steps
+        motions.append(bend_motion(path.voxels, linkage, run, diameter, MAX_BEND_DEG))
+        far.append(straightness(placed(descent.angles)))
+        if motions[-1].straight:
+            return motions[-1], n_steps
+    return motions[int(np.argmax(far))], n_steps
 
 
 def barrier_descent(linkage: Linkage, diameter: float) -> Descent:
