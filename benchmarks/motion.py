@@ -26,7 +26,7 @@ LARGE = ["armadillo", "dinosaur", "aircraft", "elephant", "elk"]
 SIZES = {**dict.fromkeys(SMALL, 1600), **dict.fromkeys(LARGE, 6500)}
 """The paper's ten models and about the voxels that they have there."""
 
-WARM_UP = 40
+WARM_UP = 20
 """Voxels of the ball that compiles the kernels before the clock runs."""
 
 Found = tuple[lu.Motion, int]

@@ -64,7 +64,7 @@ def test_coverage_on_a_tiny_solid(tmp_path):
 
 
 def test_motions_on_a_tiny_solid(tmp_path):
-    run("--solid", "duck", "--voxels", 60, "--steps", 20, "--out", tmp_path, app=motion.app)
+    run("--solid", "duck", "--voxels", 30, "--steps", 20, "--out", tmp_path, app=motion.app)
     table = pd.read_csv(tmp_path / "motion.csv").set_index("method")
     assert table.index.tolist() == ["energy", "barrier", "peel", "growth"]
     assert table.loc["growth", ["certified", "end"]].tolist() == [True, "straight"]
