@@ -18,6 +18,8 @@ from .plan import DIAMETER, MAX_BEND_DEG
 CROSSING = 1e-3
 """The paper's bars have no width; a step must surely keep them this far from crossing."""
 
+ROUNDING = 1e-6
+
 
 def energy(path: VoxelPath, seed: int, *, axis: int = 1, steps: int = 5_000) -> Motion:
     """Descend the energy of the path projected along `axis` (the paper's is y), then tilt.
@@ -39,7 +41,7 @@ def energy_run(path: VoxelPath, axis: int, steps: int) -> tuple[Motion, int]:
     run = energy_descent(linkage).run(steps)
     bend_deg = largest_bend(linkage, run.rows)
     beside = np.cos(np.radians(max(bend_deg - 90, 0)))  # bars 0 and 2 of a sharp bend
-    diameter = min(DIAMETER, float(beside), least_clearance(linkage, run.rows))
+    diameter = min(DIAMETER, float(beside) - ROUNDING, least_clearance(linkage, run.rows))
     motion = bend_motion(path.voxels, linkage, run, diameter, max(MAX_BEND_DEG, bend_deg))
     return motion, run.steps
 
