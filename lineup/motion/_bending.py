@@ -110,7 +110,7 @@ def bend_motion(
 ) -> Motion:
     """The motion of a run and, where it ends in a line, the tilt that lines up the other bars.
 
-    See PAPER.md, deviation: the second stage of Algorithm 4 is one TILT.
+    The tilt stands for the second stage of Algorithm 4. See PAPER.md, deviation 6.
     """
     n_bars, n_rows = len(voxels) - 1, len(run.rows)
     angles = np.zeros((n_rows, n_bars), np.int32)
