@@ -167,7 +167,10 @@ def test_whole_ticks_keep_bends(voxels, axis, seed):
 
 
 def check_bending(motion, samples=12):
-    """Poses keep what the motion says, and its last is a line exactly if it says so."""
+    """Poses keep what the motion says, also to the judge; its last is a line if it says so."""
+    verdict = lu.certify(motion, diameter=motion.diameter, max_bend_deg=motion.max_bend_deg)
+    assert verdict.ok == motion.straight, verdict.reason
+    assert verdict.moves_checked == len(motion), verdict.reason
     poses = list(lu.frames(motion, substeps=samples))
     assert min(map(pose_clearance, poses)) >= motion.diameter
     assert max(map(pose_bend_deg, poses)) <= motion.max_bend_deg + 1e-6

@@ -92,14 +92,17 @@ def line_ahead(linkage: Linkage, row: IntArray, diameter: float) -> IntArray | N
     return target if there or passes(linkage, row, target, diameter) else None
 
 
-@kernel
 def ticks(angles: FloatArray, corners: IntArray, max_bend: int) -> IntArray:
     """Angles to whole ticks, so that no bend at a corner grows beyond `max_bend` by rounding."""
-    rounded = np.floor(angles / TICK + 0.5).astype(np.int32)
+    row = np.floor(angles / TICK + 0.5).astype(np.int32)
+    _limit_bends(row, corners, max_bend)
+    return row
+
+
+@kernel
+def _limit_bends(row: IntArray, corners: IntArray, max_bend: int) -> None:
     for b in corners:
-        bend = rounded[b + 1] - rounded[b]
-        rounded[b + 1] = rounded[b] + min(max(bend, -max_bend), max_bend)
-    return rounded
+        row[b + 1] = row[b] + min(max(row[b + 1] - row[b], -max_bend), max_bend)
 
 
 def bend_motion(
@@ -107,7 +110,7 @@ def bend_motion(
 ) -> Motion:
     """The motion of a run and, where it ends in a line, the tilt that lines up the other bars.
 
-    See PAPER.md, deviation: the second stage of Algorithm 4 is one TILT.
+    The tilt stands for the second stage of Algorithm 4. See PAPER.md, deviation 6.
     """
     n_bars, n_rows = len(voxels) - 1, len(run.rows)
     angles = np.zeros((n_rows, n_bars), np.int32)

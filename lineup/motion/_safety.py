@@ -18,6 +18,9 @@ ROUNDS = 40
 
 SAMPLES = 8
 
+TOLERANCE = 5e-4
+"""How much less than the bars keep may be claimed that they do, so that bounds can be quick."""
+
 
 def passes(
     linkage: Linkage, before: IntArray, after: IntArray, diameter: float, *, pieces: int = 64
@@ -39,7 +42,7 @@ def passes(
     return False
 
 
-def least_clearance(linkage: Linkage, rows: IntArray, tolerance: float = 5e-4) -> float:
+def least_clearance(linkage: Linkage, rows: IntArray, tolerance: float = TOLERANCE) -> float:
     """A distance that bars keep while the angles pass through `rows`, low by about `tolerance`."""
     least = clearance(linkage, placed(radians(rows[0]))) - tolerance
     for before, after in pairwise(rows):

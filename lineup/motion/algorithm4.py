@@ -12,7 +12,7 @@ from ..solid import Motion, VoxelPath
 from ._bending import bend_motion
 from ._descent import Descent
 from ._linkage import Linkage, largest_bend, placed, project, torques
-from ._safety import least_clearance
+from ._safety import TOLERANCE, least_clearance
 from .plan import DIAMETER, MAX_BEND_DEG
 
 CROSSING = 1e-3
@@ -39,7 +39,7 @@ def energy_run(path: VoxelPath, axis: int, steps: int) -> tuple[Motion, int]:
     run = energy_descent(linkage).run(steps)
     bend_deg = largest_bend(linkage, run.rows)
     beside = np.cos(np.radians(max(bend_deg - 90, 0)))  # bars 0 and 2 of a sharp bend
-    diameter = min(DIAMETER, float(beside), least_clearance(linkage, run.rows))
+    diameter = min(DIAMETER, float(beside) - TOLERANCE, least_clearance(linkage, run.rows))
     motion = bend_motion(path.voxels, linkage, run, diameter, max(MAX_BEND_DEG, bend_deg))
     return motion, run.steps
 
