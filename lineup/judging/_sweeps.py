@@ -62,7 +62,7 @@ def meet(m: Ints, r: Ints, turning: bool, nearest: Nearest) -> None:
 
 @kernel
 def _share_a_height(m: Ints, r: Ints) -> bool:
-    return m[HLO] <= r[HHI] and r[HLO] <= m[HHI]
+    return bool(m[HLO] <= r[HHI] and r[HLO] <= m[HHI])
 
 
 @kernel
