@@ -131,9 +131,9 @@ FAULTS = {
     "limb of a door touches": (
         one("DDESENUWU", (Move.DOOR, 3, 6, -1)),
         0,
-        "bars 5 and 7 come within 0,",
+        "bars 3 and 8 come within 0,",
     ),
-    "swapped moves": (swapped(SWAPPABLE, 0), 0, "bars 3 and 5 come within 0,"),
+    "swapped moves": (swapped(SWAPPABLE, 0), 0, "bars 2 and 4 come within 0,"),
     "bend of 180": (
         one("EEN", (Move.SWING, 2, 3, WEST), straight=False),
         0,

@@ -49,7 +49,8 @@ def new_chain(pose: Ints) -> Chain:
         np.zeros(2, np.int64),
         np.zeros(2, np.int64),
     )
-    release(chain, 1, 0)
+    for side in range(2):
+        release(chain, side, chain.body[0])
     _restart(chain)
     return chain
 

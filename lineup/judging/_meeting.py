@@ -65,36 +65,32 @@ def see_rest(court: Court, moving: Moving, frame: Frame, hinges: tuple[int, int]
     """List the runs outside the body that rest; their number."""
     chain, count = court.chain, 0
     for side in range(2):
-        n = chain.n_runs[side]
-        if side == moving.side:
-            count = see_runs(chain, side, 0, moving.begin, frame, hinges, court.resting, count)
-            count = see_runs(chain, side, moving.end, n, frame, hinges, court.resting, count)
-        else:
-            count = see_runs(chain, side, 0, n, frame, hinges, court.resting, count)
+        for k in range(chain.n_runs[side]):
+            if side != moving.side or not moving.begin <= k < moving.end:
+                count = _see(chain.runs[side, k], frame, hinges, court.resting, count)
     return count
 
 
 @kernel
-def see_runs(
-    chain: Chain,
-    side: int,
-    begin: int,
-    end: int,
-    frame: Frame,
-    hinges: tuple[int, int],
-    out: Ints,
-    count: int,
-) -> int:
-    """Write runs begin..end-1 of a side, as seen in a frame, from row `count` on; the new count."""
-    for k in range(begin, end):
-        run = chain.runs[side, k]
-        near, far = run[NEAR_X:FAR_X], run[FAR_X:]
-        count = _place(run[NEAR], run[FAR], near, far, frame, hinges, out, count)
+def see_moving(court: Court, moving: Moving, frame: Frame, hinges: tuple[int, int]) -> int:
+    """List the runs that move, the one at the hinge first; their number."""
+    if moving.side == IN_BODY:
+        return _see_limb(court, frame, hinges)
+    count = 0
+    for k in range(moving.end - 1, moving.begin - 1, -1):
+        count = _see(court.chain.runs[moving.side, k], frame, hinges, court.moving, count)
     return count
 
 
 @kernel
-def see_limb(court: Court, frame: Frame, hinges: tuple[int, int]) -> int:
+def _see(run: Ints, frame: Frame, hinges: tuple[int, int], out: Ints, count: int) -> int:
+    """Write a run outside the body, as seen in a frame, from row `count` on; the new count."""
+    near, far = run[NEAR_X:FAR_X], run[FAR_X:]
+    return _place(run[NEAR], run[FAR], near, far, frame, hinges, out, count)
+
+
+@kernel
+def _see_limb(court: Court, frame: Frame, hinges: tuple[int, int]) -> int:
     """List the straight runs of the body between two of its joints; their number."""
     pose, count = court.chain.pose, 0
     start, other = hinges

@@ -33,9 +33,8 @@ from ._meeting import (
     Frame,
     Moving,
     meet_rest,
-    see_limb,
+    see_moving,
     see_rest,
-    see_runs,
     to_frame,
 )
 from ._sweeps import XHI, XLO, Floats, Ints, Nearest, compare, nearest_bars
@@ -128,8 +127,10 @@ def _judge(court: Court, limits: Limits, move: Ints) -> tuple[int, float, int, i
         after, joint_after = before, joint_before
     if after > limits.max_bend_deg:
         return BEND, after, joint_after, gained
-    fits = (court.extent[1] - court.extent[0] <= limits.reach).all()
-    return (FINE if fits else OUTGROWN), after, joint_after, gained
+    for axis in range(3):
+        if court.extent[1, axis] - court.extent[0, axis] > limits.reach[axis]:
+            return OUTGROWN, after, joint_after, gained
+    return FINE, after, joint_after, gained
 
 
 @kernel
@@ -251,26 +252,17 @@ def _sweep(court: Court, move: Ints, moving: Moving, frame: Frame) -> None:
     """Take note of how near the chain comes to itself during a move, and of how far it reaches."""
     kind, joint, other, _ = move
     hinges = (joint, joint if kind == _SWING else other)
-    n_resting = see_rest(court, moving, frame, hinges)
-    side, begin, end = moving
-    if kind != _PEEL:
-        in_body = side == IN_BODY
-        if in_body:
-            n = see_limb(court, frame, hinges)
-        else:
-            n = see_runs(court.chain, side, begin, end, frame, hinges, court.moving, 0)
-        limb = (joint, other) if in_body else (0, 0)
-        meet_rest(court, court.moving[:n], n_resting, True, limb, frame)
-    else:
-        see_runs(court.chain, side, end - 1, end, frame, hinges, court.moving, 0)
-        n = see_runs(court.chain, side, begin, end - 1, frame, hinges, court.moving, 1)
-        bar, carried = court.moving[:1], court.moving[1:n]
-        meet_rest(court, bar, n_resting, True, (0, 0), frame)
-        meet_rest(court, carried, n_resting, False, (0, 0), frame)
-        # Seen from the carried bars the turning bar swings about `other`, by the same quarter.
-        court.moving[:n, XLO] -= 1
-        court.moving[:n, XHI] -= 1
-        compare(bar, carried, True, court.nearest)
+    n_resting, n = see_rest(court, moving, frame, hinges), see_moving(court, moving, frame, hinges)
+    limb = (joint, other if moving.side == IN_BODY else joint)  # of the body; empty if none moves
+    n_turning = 1 if kind == _PEEL else n
+    turning, carried = court.moving[:n_turning], court.moving[n_turning:n]
+    for slides in range(2):
+        meet_rest(court, carried if slides else turning, n_resting, slides == 0, limb, frame)
+    # Seen from the carried bars the turning bar swings about `other`, by the same quarter.
+    for run in court.moving[:n]:
+        run[XLO] -= 1
+        run[XHI] -= 1
+    compare(turning, carried, True, court.nearest)
     _charge(court.chain, moving, n)
 
 
