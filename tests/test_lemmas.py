@@ -33,10 +33,20 @@ def single(start, row, poses=((),)):
     )
 
 
-def sampled(start, row, poses=((),), samples=17):
-    """Least distance of bars two or more apart, and largest bend, during one move."""
-    trial = single(start, row, poses)
-    return sampled_move(trial, start.astype(float), trial.moves[0], samples=samples)
+def sampled(start, row, samples=33):
+    """Least distance of bars two or more apart, and largest bend, at moments of one move."""
+    trial = single(start, row)
+    moments = np.linspace(0, 1, samples)
+    poses = [kinematics.moved(start.astype(float), trial.moves[0], trial, t) for t in moments]
+    k, m = np.triu_indices(len(start) - 1, 2)
+    ends = [np.concatenate([pose[joint] for pose in poses]) for joint in (k, k + 1, m, m + 1)]
+    return segment_distances(*ends).min(initial=np.inf), max(map(pose_bend_deg, poses))
+
+
+def sampled_finely(start, row):
+    """The same, the lowest samples refined."""
+    trial = single(start, row)
+    return sampled_move(trial, start.astype(float), trial.moves[0], samples=257)
 
 
 def taken(voxels):
@@ -47,13 +57,13 @@ def taken(voxels):
 
 
 @given(paths())
-@settings(max_examples=25)
+@settings(max_examples=40)
 def test_a_lattice_pose_has_clearance_one(pose):
     assert pose_clearance(pose.astype(float)) == 1
 
 
 @given(st.integers(0, 2**32 - 1))
-@settings(max_examples=25)
+@settings(max_examples=40)
 def test_bars_beside_a_bar_keep_its_length_apart_where_no_bend_exceeds_90(seed):
     u, v, w = np.random.default_rng(seed).normal(size=(3, 200, 3))
     u, v, w = (x / np.linalg.norm(x, axis=1)[:, None] for x in (u, v, w))
@@ -76,7 +86,7 @@ def pulls(pose, without_us=False):
 
 
 @given(walks(without_us=True), st.data())
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=40, deadline=None)
 def test_a_pull_without_a_u_keeps_its_clearance_and_bend(start, data):
     rows = pulls(start, without_us=True)
     assume(rows)
@@ -86,7 +96,7 @@ def test_a_pull_without_a_u_keeps_its_clearance_and_bend(start, data):
 
 
 @given(paths(), st.data())
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=40, deadline=None)
 def test_a_pull_of_any_simple_path_keeps_its_clearance_and_bend(start, data):
     rows = pulls(start)
     assume(rows)
@@ -97,10 +107,10 @@ def test_a_pull_of_any_simple_path_keeps_its_clearance_and_bend(start, data):
 
 def test_both_bounds_of_the_pull_are_met():
     """The head turns a corner with a voxel in its crook; a chain glides round a U."""
-    clearance, bend_deg = sampled(word("DSWUNN"), (Move.PULL, 6, 0, EAST), samples=257)
+    clearance, bend_deg = sampled_finely(word("DSWUNN"), (Move.PULL, 6, 0, EAST))
     assert clearance == pytest.approx(CORNER, abs=EXACT)
     assert bend_deg == pytest.approx(90, abs=DEG)
-    clearance, bend_deg = sampled(word("EESWW"), (Move.PULL, 5, 0, WEST), samples=257)
+    clearance, bend_deg = sampled_finely(word("EESWW"), (Move.PULL, 5, 0, WEST))
     assert clearance == pytest.approx(U, abs=EXACT)
     assert bend_deg == pytest.approx(120, abs=0.01)
 
@@ -135,7 +145,7 @@ def tilted(bars, towards):
 
 
 @given(walks(max_bars=20), st.integers(0, 5))
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=40, deadline=None)
 def test_a_tilt_of_a_monotone_path_brings_no_two_points_nearer(start, against):
     # What is left of a walk without its steps against one direction is monotone, hence simple.
     bars = grid.bar_directions(start)
@@ -170,7 +180,7 @@ def cosines(pose):
 
 
 @given(walks(max_bars=12), st.integers(0, 5))
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=40, deadline=None)
 def test_a_tilt_of_a_path_that_is_not_monotone_ends_bent_back(start, towards):
     bars = grid.bar_directions(start)
     against = bars == (towards + 3) % 6
@@ -235,7 +245,7 @@ def is_free(clearance, bend_deg):
 
 
 @given(rods(0), st.data())
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=40, deadline=None)
 def test_a_peel_is_free_of_collisions_exactly_where_its_box_is(start, data):
     last, b = len(start) - 1, straight_tail(start)
     d = int(grid.bar_directions(start)[-1])
@@ -246,7 +256,7 @@ def test_a_peel_is_free_of_collisions_exactly_where_its_box_is(start, data):
 
 
 @given(rods(1), st.data())
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=40, deadline=None)
 def test_a_swing_is_free_of_collisions_exactly_where_its_sector_is(start, data):
     b = data.draw(st.integers(straight_tail(start), len(start) - 2))
     d = int(grid.bar_directions(start)[-1])
@@ -262,7 +272,7 @@ def test_the_tip_of_a_rod_rises_past_a_voxel_that_a_single_bar_would_not_meet():
     beside_b = tuple(pose[b] + grid.DIRECTIONS[UP])
     assert (q_ray | {beside_b}).isdisjoint(taken(pose[:b]))
     assert not peel_is_free(pose, b, UP)
-    clearance, bend_deg = sampled(pose, (Move.PEEL, b - 1, b, UP), samples=257)
+    clearance, bend_deg = sampled_finely(pose, (Move.PEEL, b - 1, b, UP))
     assert clearance == pytest.approx(np.sqrt(2) - 1, abs=EXACT)
     assert bend_deg <= 90 + DEG
 
@@ -321,7 +331,7 @@ def limbs(draw):
 
 
 @given(limbs())
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=40, deadline=None)
 def test_a_door_whose_rings_are_free_keeps_clear(limb):
     start, row = limb
     assert row in list(doors(start))
@@ -355,7 +365,7 @@ def quarter_turns(pose):
 
 
 @given(paths(), st.data())
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=40, deadline=None)
 def test_a_quarter_turn_bends_most_at_its_two_ends(start, data):
     row = data.draw(st.sampled_from(list(quarter_turns(start))))
     before, after = pose_bend_deg(start), pose_bend_deg(turned(start, row))
@@ -363,7 +373,7 @@ def test_a_quarter_turn_bends_most_at_its_two_ends(start, data):
 
 
 @given(paths(), st.data())
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=40, deadline=None)
 def test_in_a_quarter_turn_only_bars_that_share_a_height_come_nearer_than_one(start, data):
     row = data.draw(st.sampled_from(list(quarter_turns(start))))
     trial = single(start, row)
