@@ -170,6 +170,42 @@ class Motion:
 
 
 @record
+class Obstacles:
+    """Unit voxels that a chain has to keep out of, beside it in the frame of its motion.
+
+    Attributes
+    ----------
+    occupancy : (X, Y, Z) bool
+        No obstacle lies beyond the grid.
+    origin : (3,) int32
+        Position of ``occupancy[0, 0, 0]``.
+
+    Raises
+    ------
+    ValueError
+        If the grid is not a 3D bool array with a voxel set, or the origin not three integers.
+    """
+
+    occupancy: grid.BoolArray
+    origin: grid.IntArray = field(default_factory=lambda: np.zeros(3, np.int32))
+
+    def __post_init__(self) -> None:
+        check_occupancy(self.occupancy)
+        if np.shape(self.origin) != (3,):
+            raise ValueError(f"origin must be three integers, got shape {np.shape(self.origin)}")
+        origin = _int_rows(np.asarray(self.origin)[None], "origin", 3)[0]
+        object.__setattr__(self, "origin", origin)
+
+    def holds(self, positions: np.ndarray[Any, Any]) -> grid.BoolArray:
+        """Which of (n, 3) integer positions are obstacles, (n,) bool."""
+        cell = np.asarray(positions) - self.origin
+        inside = ((cell >= 0) & (cell < self.occupancy.shape)).all(axis=1)
+        held = np.zeros(len(cell), bool)
+        held[inside] = self.occupancy[tuple(cell[inside].T)]
+        return held
+
+
+@record
 class Folding:
     """A path and a motion that unfolds exactly this path: ``motion.start == path.voxels``."""
 

@@ -31,7 +31,7 @@ ORDER = [
     *("meshes", "implicit", "shapes", "sampling", "voxelization", "catalog"),
     *("visits", "reeb", "planar", "linking", "assumptions", "paper", "spatial", "refinement"),
     *("layered", "bounds", "subset_sums", "contraction"),
-    *("motion", "folding", "trimming", "transformation"),
+    *("motion", "folding", "trimming", "transformation", "scenarios"),
     *("storage", "verification", "pipeline", "_sources", "engines", "sweep", "tables", "draw"),
     *("_progress", "cli"),
 ]

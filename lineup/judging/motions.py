@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from .. import grid
 from ..joints import JOINTS, slot_violations
 from ..kinematics import Move
-from ..solid import Certificate, Motion
-from . import _bends, _pulls, _turns
+from ..solid import Certificate, Motion, Obstacles
+from . import _bends, _obstacles, _pulls, _turns
 from ._lattice import congruent, largest_bend, not_simple
 from ._tilts import malformed_tilt, not_monotone, tilt_box
 
@@ -30,6 +30,7 @@ def certify(
     max_bend_deg: float = 90.0,
     within: tuple[float, float, float] | None = None,
     joints: str = "free",
+    obstacles: Obstacles | None = None,
 ) -> Certificate:
     """Judge a whole motion, at every instant, from its start to its last pose (Section 6).
 
@@ -52,6 +53,9 @@ def certify(
     joints : str
         "free", or "slotted" to ask as well that no capsule twists between two bent joints, which
         the slots of the printed block do not let it (Figure 16, see `lineup.joints`).
+    obstacles : Obstacles, optional
+        Unit voxels, in the frame of `motion`, that no bar may enter. Only pulls, and bars of
+        diameter 1 at most, are judged beside obstacles; other motions are refused.
 
     Returns
     -------
@@ -72,7 +76,9 @@ def certify(
     Any other TILT is refused. A PULL is judged by a lemma, too: where the P + 1 voxels that the
     chain leaves, passes and reaches are all different, bars keep 1 from each other if these
     lie in a straight line; .9142, with bends of 90 degrees at most, if they make corners but no
-    U (three edges of a unit square in a row); sqrt(3)/2 and 120 degrees if they do.
+    U (three edges of a unit square in a row); sqrt(3)/2 and 120 degrees if they do. Beside
+    obstacles these voxels have to be free, and at each corner a, b, c also that in its crook,
+    a + c - b: bars of diameter 1 at most then stay in free voxels (proved in `_obstacles`).
 
     A BEND must begin in the pose that is, angles counted modulo a full turn, and may end off the
     lattice; then only a BEND about the same axis may follow. Its distances are bounded on ever
@@ -104,7 +110,7 @@ def certify(
         raise ValueError(f"within must be three positive numbers of voxels, got {within}")
     if joints not in JOINTS:
         raise ValueError(f"unknown joints {joints!r}; known: {', '.join(JOINTS)}")
-    verdict = _Trial(motion, diameter, max_bend_deg, box).verdict()
+    verdict = _Trial(motion, diameter, max_bend_deg, box, obstacles).verdict()
     return verdict if joints == "free" else _slotted(motion, verdict)
 
 
@@ -127,9 +133,14 @@ class _Trial:
     """One motion under judgement: its pose, and what has been met so far."""
 
     def __init__(
-        self, motion: Motion, diameter: float, max_bend_deg: float, within: grid.FloatArray
+        self,
+        motion: Motion,
+        diameter: float,
+        max_bend_deg: float,
+        within: grid.FloatArray,
+        obstacles: Obstacles | None,
     ) -> None:
-        self.motion = motion
+        self.motion, self.obstacles = motion, obstacles
         self.diameter, self.max_bend_deg, self.within = diameter, max_bend_deg, within
         self.pose = np.array(motion.start, np.int64, order="C")
         self.clearance, self.nearest = float("inf"), (-1, -1, -1)
@@ -143,6 +154,7 @@ class _Trial:
     def verdict(self) -> Certificate:
         return (
             self._start()
+            or self._start_beside()
             or self._moves()
             or self._end()
             or self._certificate(ok=True, reason="certified")
@@ -195,6 +207,17 @@ class _Trial:
         self._widen(np.stack([self.pose.min(axis=0), self.pose.max(axis=0)]))
         return self._outgrown(-1)
 
+    def _start_beside(self) -> Certificate | None:
+        """What speaks against the start beside the obstacles, if there are any."""
+        if self.obstacles is None:
+            return None
+        if self.diameter > _obstacles.THICKEST:
+            return self._refuse("bars thicker than 1 are not judged beside obstacles")
+        inside = self.obstacles.holds(self.pose)
+        if inside.any():
+            return self._refuse(f"start: joint {int(inside.argmax())} is inside an obstacle")
+        return None
+
     def _outgrown(self, where: int) -> Certificate | None:
         extent = self._extent()
         for axis in range(3):
@@ -217,6 +240,9 @@ class _Trial:
             if move[0] not in judges:
                 self.checked += 1
                 return self._refuse(f"malformed: {_named(move)} is of no known kind", where)
+            if self.obstacles is not None and move[0] != Move.PULL:
+                self.checked += 1
+                return self._refuse(f"{_named(move)} is not judged beside obstacles", where)
             refused = judges[move[0]]() or self._outgrown(self.checked - 1)
             if refused:
                 return refused
@@ -261,6 +287,9 @@ class _Trial:
         values = values[: len(run) if run.all() else int(np.argmin(run))]
         ahead = slice(None, None, 1 if head == last else -1)
         steps = grid.DIRECTIONS[values].astype(np.int64)
+        hit = self._hit(self.pose[ahead], steps)
+        if hit:
+            steps = steps[: max(hit.vertex - last, 1)]
         pulled = _pulls.carry_out(self.pose[ahead], steps, self.diameter, self.max_bend_deg)
         where = first + pulled.made
         heads = self.pose[head] + np.vstack([0 * steps[:1], steps[: pulled.made]]).cumsum(axis=0)
@@ -272,7 +301,7 @@ class _Trial:
         self.was_straight = self.was_straight or pulled.straight
         self.checked = where + (pulled.fault != _pulls.FINE)
         if pulled.fault == _pulls.FINE:
-            return None
+            return hit and self._refuse(f"the pull meets an obstacle: {hit.what}", where - 1)
         if pulled.fault == _pulls.BACK:
             return self._refuse(f"malformed: {_named(moves[where])} goes straight back", where)
         if pulled.fault == _pulls.BLOCKED:
@@ -285,6 +314,15 @@ class _Trial:
                 where,
             )
         return self._refuse(f"bend of {pulled.bend_deg:g} degrees round a corner or U", where)
+
+    def _hit(
+        self, pose: NDArray[np.int64], steps: NDArray[np.int64]
+    ) -> _obstacles.Hit | None:
+        """The first obstacle on the track of pulls by the last joint of a pose."""
+        if self.obstacles is None:
+            return None
+        track = np.vstack([pose, pose[-1] + steps.cumsum(axis=0)])
+        return _obstacles.first_hit(track, self.obstacles)
 
     def _tilt(self) -> Certificate | None:
         where, move = self.checked, self.motion.moves[self.checked]

@@ -7,22 +7,19 @@ bars of diameter .914 and joints of 90 degrees do if the track has no *U*, three
 square in a row, and .866 and 120 degrees whatever the track.
 """
 
-from collections import deque
-
 import numpy as np
 from numpy.typing import NDArray
 
 from ..grid import DIRECTIONS, BoolArray, IntArray, bar_directions
 from ..kinematics import Move
 from ..solid import Motion, VoxelPath
+from ._ways import ways
 
 U_FREE, WITH_US = (0.914, 90.0), (0.866, 120.0)
 """Diameter and largest bend that a track without a U allows, and one with Us."""
 
 MARGIN = 2
 """Free voxels all round a path among which a way out is sought."""
-
-State = tuple[int, int, int]
 
 
 def pull(path: VoxelPath, seed: int) -> Motion:
@@ -62,34 +59,17 @@ def _moves(voxels: IntArray, head: int, *, u_free: bool) -> IntArray | None:
 
 
 def _way_out(voxels: IntArray, head: int, track: list[int], *, u_free: bool) -> list[int] | None:
-    """The steps of a shortest way from an end to an open ray, the first on the ray included.
-
-    Breadth first over states (cell, last step, the step that must not be undone beside it).
-    """
+    """The steps of a shortest way from an end to an open ray, the first on the ray included."""
     corner = voxels.min(axis=0) - MARGIN
     taken = np.zeros(voxels.max(axis=0) + MARGIN + 1 - corner, bool)
     taken[tuple((voxels - corner).T)] = True
     opens = np.stack([_open_rays(taken, d).ravel() for d in range(6)])
-    shut = np.pad(taken[1:-1, 1:-1, 1:-1], 1, constant_values=True).ravel()
-    strides = (DIRECTIONS @ np.array([taken[0].size, taken.shape[2], 1])).tolist()
+    shut = np.pad(taken[1:-1, 1:-1, 1:-1], 1, constant_values=True)
     first = int(np.ravel_multi_index(tuple(voxels[head] - corner), taken.shape))
     start = (first, track[-1], track[-2] if u_free and len(track) > 1 else track[-1])
-    came_from: dict[State, State] = {}
-    queue = deque([start])
-    while queue:
-        state = queue.popleft()
-        cell, last, before = state
-        onward = [d for d in (last, *range(6)) if (d + 3) % 6 not in (last, before)]
-        for d in onward:
-            if opens[d, cell]:
-                states = _led(came_from, state)
-                if _is_simple([s[0] for s in states], d, taken.shape):
-                    return [s[1] for s in states[1:]] + [d]
-        for d in onward:
-            ahead = (cell + strides[d], d, last if u_free else d)
-            if not shut[ahead[0]] and ahead not in came_from:
-                came_from[ahead] = state
-                queue.append(ahead)
+    for cells, steps in ways(shut, start, opens, u_free=u_free):
+        if _is_simple(cells, steps[-1], taken.shape):
+            return steps
     return None
 
 
@@ -99,14 +79,6 @@ def _open_rays(taken: BoolArray, direction: int) -> BoolArray:
     inwards = np.flip(taken, axis) if direction < 3 else taken
     seen = inwards.cumsum(axis=axis) == inwards
     return np.flip(seen, axis) if direction < 3 else seen
-
-
-def _led(came_from: dict[State, State], state: State) -> list[State]:
-    """The states that led to this one, from the first on."""
-    states = [state]
-    while states[-1] in came_from:
-        states.append(came_from[states[-1]])
-    return states[::-1]
 
 
 def _is_simple(cells: list[int], direction: int, shape: tuple[int, ...]) -> bool:

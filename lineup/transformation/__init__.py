@@ -1,18 +1,21 @@
 """From one shape of the chain to another (Sections 6 and 7): shape A, straight line, shape B."""
 
 from collections.abc import Iterator
-from itertools import chain
+from itertools import chain, islice
 
 import numpy as np
 
+from ..folding.pulling import is_pulled
 from ..grid import IntArray, bar_directions
 from ..judging import certify
 from ..solid import Folding, Motion
+from .gliding import NO_WAY, beside, glide
 from .reversal import TURNS, joined, reversal, turned, turned_code, words
 from .stowing import one_ended_plans, passed_on, stowed
 
 DONE = "reaches its goal"
 SHORTEST_STRAND = 4
+PLACES = 100  # of B beside A that are tried, those of the smallest boxes
 MISSES = 3  # candidates that do not fit before the search gives up; longer strands take more room
 
 
@@ -37,7 +40,8 @@ def transform(
         what has been let go is folded away at its far end, into layers like a folded napkin,
         with a straight strand between them and what is left of the shape. This takes motions
         of peels and swings that let go at one end of the chain (``lu.fold(..., ends=1)``), or
-        paths for which such a motion is found.
+        paths for which such a motion is found. If both motions are pulls, B is placed beside A
+        and the chain glides out of the one into the other along its own track.
     seed : int
         For the search of such motions.
 
@@ -75,7 +79,9 @@ def transform(
     if within is None:
         return through_line
     misses = []
-    for motion in chain([through_line], _compact(a, b, max(within), seed)):
+    both_pulled = is_pulled(a) and is_pulled(b)
+    compact = _glides(a, b, within) if both_pulled else _compact(a, b, max(within), seed)
+    for motion in chain([through_line], compact):
         certificate = certify(motion, motion.diameter, motion.max_bend_deg)
         if not certificate.ok:
             continue
@@ -85,7 +91,7 @@ def transform(
         misses.append(certificate.extent)
         if len(misses) > MISSES:
             break
-    return _refused(a, b, _why_not(misses, within))
+    return _refused(a, b, _no_glide(a, b, within) if both_pulled else _why_not(misses, within))
 
 
 def _why_not(misses: list[tuple[float, float, float]], within: tuple[int, int, int]) -> str:
@@ -128,6 +134,22 @@ def _compact(a: Motion, b: Motion, longest: int, seed: int) -> Iterator[Motion]:
         if end != second[1]:
             half = joined(half, passed_on(half.goal, end, strand), "")
         yield joined(half, _aligned(half, reversal(second[0])), DONE)
+
+
+def _glides(a: Motion, b: Motion, within: tuple[int, int, int]) -> Iterator[Motion]:
+    """Motions that glide out of A into B beside it, those in small boxes and without Us first."""
+    places = islice(beside(a.start, b.start, within), PLACES)
+    found = (glide(a.start, place) for place, _ in places)
+    made = [motion for motion in found if len(motion)]
+    yield from sorted(made, key=lambda motion: -motion.diameter)
+
+
+def _no_glide(a: Motion, b: Motion, within: tuple[int, int, int]) -> str:
+    if next(beside(a.start, b.start, within), None) is None:
+        _, sides = next(beside(a.start, b.start, (np.inf,) * 3))
+        size = " x ".join(str(side) for side in np.sort(sides)[::-1])
+        return f"side by side the shapes take {size} pitches, and {within} does not hold them"
+    return f"{NO_WAY} inside {within}"
 
 
 def _strands(longest: int) -> Iterator[int]:
