@@ -9,6 +9,7 @@ from .files import save
 from .moments import unfolding
 from .plans import layers, reeb
 from .regions import checkerboard, contraction, merge, planar_steps
+from .scenarios import run
 from .scenes import chain, contact_sheet, layering, solid
 
 __all__ = [
@@ -23,6 +24,7 @@ __all__ = [
     "merge",
     "planar_steps",
     "reeb",
+    "run",
     "save",
     "solid",
     "unfolding",
