@@ -13,12 +13,12 @@ from scipy.spatial import cKDTree
 
 from ._record import record
 from .folding import fold
-from .grid import DIRECTIONS, BoolArray, FloatArray, IntArray, bar_directions, components
+from .grid import DIRECTIONS, BoolArray, FloatArray, IntArray, bar_directions
 from .judging import certify
 from .kinematics import Move
 from .motion.pulling import MARGIN
 from .solid import Certificate, Folding, Motion, Obstacles, VoxelPath, VoxelSolid
-from .transformation.gliding import glide
+from .transformation.gliding import NO_WAY, glide
 
 LEAD = 3
 """Voxels between the wall and the shapes on its two sides, and of straight tube at its mouths."""
@@ -80,7 +80,7 @@ def through_tube(
     Returns
     -------
     Scenario
-        The motion has no moves, and a `reason`, if the tube is too narrow.
+        If the tube is too narrow, the motion has no moves, and a `reason`.
 
     Raises
     ------
@@ -116,8 +116,9 @@ def through_tube(
     else:
         found = [glide(_placed(before, mouths[0] - (LEAD + 1, 0, 0), -1), after, wall)]
     motion = min(found, key=lambda m: (not len(m), -m.diameter, len(m)))
-    if not len(motion) and not _leads_through(wall):
-        motion = replace(motion, reason=f"a tube of radius {radius:g} is too narrow")
+    if motion.reason == NO_WAY:
+        reason = f"no way leads through a tube of radius {radius:g} and into shape B"
+        motion = replace(motion, reason=reason)
     return _judged(motion, wall, line, radius)
 
 
@@ -169,7 +170,7 @@ def into_capsule(
     if not pulled_out.straight:
         motion = replace(pulled_out, goal=pulled_out.start)
         return _judged(motion, Obstacles(~filled, low), axis, radius)
-    track = _track_out(pulled_out, max(shape)) + low
+    track = _track_out(pulled_out, shape) + low
     room = _in_capsule(axis, radius, low, shape)
     shell = ndimage.binary_dilation(room, np.ones((3, 3, 3), bool)) & ~room
     corners = track[:-2] + track[2:] - track[1:-1]  # the crooks; on a straight line, its middle
@@ -198,16 +199,20 @@ def _drawn_in(track: IntArray, out: Motion, shift: IntArray) -> Motion:
     )
 
 
-def _track_out(motion: Motion, beyond: int) -> IntArray:
-    """The track of a motion that pulls a chain out, led by its last vertex, and on as far again."""
+def _track_out(motion: Motion, shape: tuple[int, ...]) -> IntArray:
+    """The track of a motion that pulls a chain out, led by its last vertex.
+
+    It goes on until all of the chain is outside of a grid of this shape.
+    """
     last = len(motion.start) - 1
     head = int(motion.moves[0, 1]) if len(motion) else last
     folded = motion.start if head else motion.start[::-1]
     steps = motion.moves[:, 3].tolist()
     onward = steps[-1] if steps else int(bar_directions(folded)[-1])
-    out = DIRECTIONS[steps + [onward] * (beyond + last)].cumsum(axis=0)
+    out = DIRECTIONS[steps + [onward] * (max(shape) + last)].cumsum(axis=0)
     track: IntArray = np.vstack([folded, folded[-1] + out])
-    return track
+    inside = ((track >= 0) & (track < shape)).all(axis=1)
+    return track[: max(int(np.flatnonzero(inside)[-1]) + 1, len(steps)) + len(folded)]
 
 
 def _path(shape: Folding | VoxelPath) -> IntArray:
@@ -239,12 +244,6 @@ def _wall_round(line: FloatArray, radius: float, shapes: list[IntArray]) -> Obst
     _, nearest = cKDTree(line).query(centre)
     farthest_corner = np.linalg.norm(np.abs(centre - line[nearest]) + 0.5, axis=1)
     return Obstacles((farthest_corner > radius).reshape(shape), low)
-
-
-def _leads_through(wall: Obstacles) -> bool:
-    """Whether face-adjacent free voxels lead through the wall."""
-    label, _ = components(~wall.occupancy)
-    return bool(np.intersect1d(label[0][label[0] > 0], label[-1]).size)
 
 
 def _placed(path: IntArray, at: IntArray, face: int) -> IntArray:

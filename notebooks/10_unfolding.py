@@ -33,7 +33,8 @@ from lineup import draw
 #
 # Seen along y, a layered path is a planar linkage. An energy that repels bars of equal depth
 # straightens it; then the path, seen along x, is a linkage that never steps down, and one tilt of
-# all bars at once does the rest. Squares that several joints fall on, the *composite* ones, are red.
+# all bars at once does the rest. Squares that several joints fall on, the *composite* ones, are
+# red.
 
 # %%
 block = lu.VoxelSolid(np.ones((5, 3, 4), bool))
@@ -74,26 +75,9 @@ print(stuck.reason)
 # touching blocks has no trouble: its ends can let go of bar after bar.
 
 # %%
-trapped = lu.VoxelPath(
-    np.array(
-        [
-            (1, 2, 1),
-            (1, 2, 0),
-            (1, 2, -1),
-            (0, 2, -1),
-            (0, 2, 0),
-            (0, 2, 1),
-            (0, 1, 1),
-            (0, 0, 1),
-            (0, 0, 0),
-            (0, 1, 0),
-            (1, 1, 0),
-            (1, 1, -1),
-            (1, 0, -1),
-            (1, 0, 0),
-        ]
-    )
-)
+letters = "DDWUUSSDNEDSU"
+steps = lu.grid.DIRECTIONS[["ENUWSD".index(letter) for letter in letters]]
+trapped = lu.VoxelPath(np.vstack([np.zeros((1, 3), int), steps.cumsum(axis=0)]))
 rests = lu.unfold(trapped, method="energy")
 assert rests.reason.startswith("stationary")
 assert lu.certify(lu.unfold(trapped)).ok

@@ -10,6 +10,7 @@ from .linkages import depths, projection, two_stages
 from .moments import unfolding
 from .plans import layers, reeb
 from .regions import checkerboard, contraction, merge, planar_steps
+from .scenarios import run
 from .scenes import chain, contact_sheet, layering, solid
 
 __all__ = [
@@ -26,6 +27,7 @@ __all__ = [
     "planar_steps",
     "projection",
     "reeb",
+    "run",
     "save",
     "solid",
     "two_stages",

@@ -288,10 +288,12 @@ class _Trial:
         values = values[: len(run) if run.all() else int(np.argmin(run))]
         ahead = slice(None, None, 1 if head == last else -1)
         steps = grid.DIRECTIONS[values].astype(np.int64)
+        hit = self._hit(self.pose[ahead], steps)
+        if hit:
+            steps = steps[: max(hit.vertex - last, 1)]
         pulled = _pulls.carry_out(self.pose[ahead], steps, self.diameter, self.max_bend_deg)
         where = first + pulled.made
         heads = self.pose[head] + np.vstack([0 * steps[:1], steps[: pulled.made]]).cumsum(axis=0)
-        track = np.vstack([self.pose[ahead], heads[1:]])
         self._widen(np.stack([heads.min(axis=0), heads.max(axis=0)]))
         self.pose = np.ascontiguousarray(pulled.pose[ahead])
         if pulled.clearance < self.clearance:
@@ -299,9 +301,8 @@ class _Trial:
         self._note_bend(pulled.bend_deg, first, -1)
         self.was_straight = self.was_straight or pulled.straight
         self.checked = where + (pulled.fault != _pulls.FINE)
-        hit = self._hit(track, first) if pulled.made else None
-        if hit or pulled.fault == _pulls.FINE:
-            return hit
+        if pulled.fault == _pulls.FINE:
+            return hit and self._refuse(f"the pull meets an obstacle: {hit.what}", where - 1)
         if pulled.fault == _pulls.BACK:
             return self._refuse(f"malformed: {_named(moves[where])} goes straight back", where)
         if pulled.fault == _pulls.BLOCKED:
@@ -315,14 +316,12 @@ class _Trial:
             )
         return self._refuse(f"bend of {pulled.bend_deg:g} degrees round a corner or U", where)
 
-    def _hit(self, track: NDArray[np.int64], first: int) -> Certificate | None:
-        """The first of the pulls along a track, of numbers from `first`, that meets an obstacle."""
-        found = self.obstacles and _obstacles.first_hit(track, self.obstacles)
-        if not found:
+    def _hit(self, pose: NDArray[np.int64], steps: NDArray[np.int64]) -> _obstacles.Hit | None:
+        """The first obstacle on the track of pulls by the last joint of a pose."""
+        if self.obstacles is None:
             return None
-        where = first + max(found.vertex - len(self.pose), 0)
-        self.checked = where + 1
-        return self._refuse(f"the pull meets an obstacle: {found.what}", where)
+        track = np.vstack([pose, pose[-1] + steps.cumsum(axis=0)])
+        return _obstacles.first_hit(track, self.obstacles)
 
     def _tilt(self) -> Certificate | None:
         where, move = self.checked, self.motion.moves[self.checked]

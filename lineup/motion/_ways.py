@@ -52,7 +52,7 @@ def ways(
     closed = shut.ravel()
     solid = np.zeros_like(closed) if wall is None else wall.ravel()
     left = np.zeros(closed.size, np.int32) if ahead is None else ahead
-    came_from: dict[State, State] = {}
+    came_from: dict[State, State | None] = {start: None}
     number = count()
     queue = [(int(left[start[0]]), int(left[start[0]]), next(number), start)]
     while queue:
@@ -91,9 +91,9 @@ def steps_to(goals: NDArray[np.intp], shut: BoolArray) -> IntArray:
     return steps
 
 
-def _led(came_from: dict[State, State], state: State) -> list[State]:
+def _led(came_from: dict[State, State | None], state: State) -> list[State]:
     """The states that led to this one, from the first on."""
     states = [state]
-    while states[-1] in came_from:
-        states.append(came_from[states[-1]])
+    while (before := came_from[states[-1]]) is not None:
+        states.append(before)
     return states[::-1]

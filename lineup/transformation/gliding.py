@@ -67,7 +67,7 @@ def glide(
     bars = [bar_directions(path) for path in (a, b)]
     reason = _in_the_way(a, b, obstacles)
     kinds = (WITH_US,) if reason or any(has_u(word) for word in bars) else (U_FREE, WITH_US)
-    straight = bool((bars[1] == bars[1][0]).all())
+    line_a, line_b = (bool((word == word[0]).all()) for word in bars)
     for kind in kinds if not reason else ():
         found = []
         for end in ends:
@@ -79,9 +79,9 @@ def glide(
             values, head = min(found, key=lambda track: len(track[0]))
             rows = [(Move.PULL, head, len(a) - 1 - head, value) for value in values]
             moves = np.array(rows, np.int32)
-            return Motion(a, moves, *kind, straight, "glides into its goal", goal=b)
+            return Motion(a, moves, *kind, line_b, "glides into its goal", goal=b)
     nothing = np.empty((0, 4), np.int32)
-    return Motion(a, nothing, *kinds[-1], False, reason or NO_WAY, goal=b)
+    return Motion(a, nothing, *kinds[-1], line_a, reason or NO_WAY, goal=b)
 
 
 def _led(
