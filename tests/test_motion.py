@@ -261,7 +261,7 @@ def test_a_state_is_entered_once_and_all_its_steps_are():
     for seed, state in itertools.product(range(5), [[3, 6, 5, 2], [2, 5, 5, 5], [1, 8, 4, 0]]):
         frontier = _search._open(len(voxels), 200)
         assert _search._enter(frontier, np.array(state, np.int32), -1)
-        _search._enter_peels(box, chain, frontier, 0, bool(seed % 2))
+        _search._enter_peels(box, chain, frontier, 0, bool(seed % 2), -1)
         for _ in range(2):
             _search._enter_swings(box, chain, frontier, 0, np.random.default_rng(seed))
         entered = frontier.state[1 : frontier.size[0]].tolist()

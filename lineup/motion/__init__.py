@@ -46,7 +46,7 @@ def unfold(path: VoxelPath, method: str = "auto", seed: int = 0, **options: Any)
     Examples
     --------
     >>> import numpy as np, lineup as lu
-    >>> path = lu.layered_path(lu.VoxelSolid(np.ones((4, 4, 3), bool)))
+    >>> path = lu.layered_path(lu.VoxelSolid(np.ones((4, 4, 1), bool)))
     >>> lu.unfold(path).reason
     'straight: accordion, since the path is monotone'
     """

@@ -60,7 +60,7 @@ def glide(
     >>> corner = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (1, 2, 0)])
     >>> motion = glide(corner, corner + (0, 0, 2))
     >>> motion.reason, motion.diameter, len(motion)
-    ('glides into its goal', 0.914, 10)
+    ('glides into its goal', 0.914, 8)
     """
     if len(a) != len(b) or len(a) < 2:
         raise ValueError(f"gliding takes two paths of one length from 2 on, got {len(a)}, {len(b)}")
