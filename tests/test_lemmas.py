@@ -11,7 +11,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from oracles import pose_bend_deg, pose_clearance, sampled_move, segment_distances
 from polycubes import STEPS
-from walks import beside, closes_a_u, paths, walks
+from walks import beside, closes_a_u, paths, walks, way
 
 import lineup as lu
 from lineup import grid, kinematics
@@ -195,12 +195,6 @@ def test_a_tilt_of_a_path_that_is_not_monotone_ends_bent_back(start, towards):
 # Lemma 4: peels and swings ------------------------------------------------------------------------
 
 
-def straight_tail(pose):
-    """The joint b from which on the last bars have one direction."""
-    bars = grid.bar_directions(pose)
-    return int(np.flatnonzero(bars != bars[-1]).max(initial=-1)) + 1
-
-
 def peel_is_free(pose, b, d):
     """The rule of a peel of joint b: its box holds no joint at rest but the pivot."""
     n_rod = len(pose) - 1 - b
@@ -221,14 +215,39 @@ def swing_is_free(pose, b, f):
     return sector.isdisjoint(taken(pose[:b]))
 
 
+def led(draw, start, goal, past):
+    """A way from a joint to a voxel past others, from the far end on."""
+    found = way(start, goal, past, draw(st.permutations(range(6))))
+    assume(found)
+    return np.array(found[::-1])
+
+
 @st.composite
-def rods(draw, n_shortest):
-    """A path that ends in a straight rod, which is at least so many bars long."""
-    start = draw(paths(max_voxels=12))
-    step, length = draw(st.sampled_from(STEPS)), n_shortest + draw(st.integers(0, 4))
-    rod = start[-1] + np.outer(np.arange(1, length + 1), step)
-    assume(not taken(rod) & taken(start))
-    return np.vstack([start, rod])
+def rods(draw, sideways):
+    """A path that ends at joint b in a rod, and a direction across it.
+
+    What rests begins somewhere near what the rod sweeps in that direction, or sideways of it.
+    Joint b - 1 lies in that direction, to be the pivot of a peel, or anywhere, for a swing.
+    """
+    n_rod = draw(st.integers(int(not sideways), 4))
+    d, f = draw(st.sampled_from([(d, f) for d in range(6) for f in range(6) if d % 3 != f % 3]))
+    up, across = grid.DIRECTIONS[[d, f]]
+    back = f if sideways else draw(st.sampled_from([k for k in range(6) if k != d]))
+    q = grid.DIRECTIONS[back]
+    rod = np.outer(np.arange(n_rod + 1), up)
+    far = draw(st.sampled_from([n_rod + 1, *range(-1, n_rod + 3)])) * up
+    far = far + draw(st.integers(-1, 2 if sideways else n_rod + 2)) * across
+    far = far + draw(st.sampled_from([0, 0, 0, 1])) * np.cross(up, across)
+    past = taken(rod)
+    if draw(st.booleans()):  # so that it comes no nearer than the rim
+        inner = [q + k * up for k in range(1, n_rod + 2)]
+        if not sideways:
+            shares = np.ndindex(n_rod + 1, n_rod + 1)
+            inner = [u * up + v * across for u, v in shares if u * u + v * v <= n_rod**2]
+        past |= {tuple(v) for v in inner if (v != q).any()}
+    assume(tuple(far) not in past)
+    rest = led(draw, tuple(q.tolist()), tuple(far.tolist()), past)
+    return np.vstack([rest, rod]), len(rest), d, f
 
 
 def at_either_end(pose, row, data):
@@ -244,23 +263,18 @@ def is_free(clearance, bend_deg):
     return clearance >= 1 - EXACT and bend_deg <= 90 + DEG
 
 
-@given(rods(0), st.data())
-@settings(max_examples=40, deadline=None)
-def test_a_peel_is_free_of_collisions_exactly_where_its_box_is(start, data):
-    last, b = len(start) - 1, straight_tail(start)
-    d = int(grid.bar_directions(start)[-1])
-    if b == 0 or data.draw(st.booleans()):  # the end has no rod: its last bar turns alone
-        b, d = last, data.draw(st.sampled_from([k for k in range(6) if k % 3 != d % 3]))
+@given(rods(sideways=True), st.data())
+@settings(max_examples=80, deadline=None)
+def test_a_peel_is_free_of_collisions_exactly_where_its_box_is(rod, data):
+    start, b, d, _ = rod
     pose, row = at_either_end(start, (Move.PEEL, b - 1, b, d), data)
     assert is_free(*sampled(pose, row)) == peel_is_free(start, b, d)
 
 
-@given(rods(1), st.data())
-@settings(max_examples=40, deadline=None)
-def test_a_swing_is_free_of_collisions_exactly_where_its_sector_is(start, data):
-    b = data.draw(st.integers(straight_tail(start), len(start) - 2))
-    d = int(grid.bar_directions(start)[-1])
-    f = data.draw(st.sampled_from([k for k in range(6) if k % 3 != d % 3]))
+@given(rods(sideways=False), st.data())
+@settings(max_examples=80, deadline=None)
+def test_a_swing_is_free_of_collisions_exactly_where_its_sector_is(rod, data):
+    start, b, _, f = rod
     pose, row = at_either_end(start, (Move.SWING, b, b + 1, f), data)
     assert is_free(*sampled(pose, row)) == swing_is_free(start, b, f)
 
@@ -319,19 +333,25 @@ def rings_are_free(pose, i, j):
 
 @st.composite
 def limbs(draw):
-    """A path that leaves a line and comes back to it, with walks before and after, and its door."""
+    """A path that leaves a line and comes back to it, and the door of that limb.
+
+    What rests begins somewhere near a ring on which the limb runs.
+    """
     deep, wide = draw(st.integers(1, 3)), draw(st.integers(1, 3))
-    i, away, back = draw(st.integers(0, 2)), draw(walks(0, 5)), draw(walks(0, 5))
-    limb = word("W" * 2 + "N" * deep + "W" * wide + "S" * deep + "W" * 2)
-    first, last = 2 - i, len(limb) - draw(st.integers(1, 3))
-    start = np.vstack([away[::-1] + limb[first], limb[first + 1 : last], back + limb[last]])
-    assume(len(taken(start)) == len(start))
-    joint = len(away) - 1 + i
-    return start, (Move.DOOR, joint, joint + 2 * deep + wide, draw(st.sampled_from([1, -1])))
+    limb = word("N" * deep + "E" * wide + "S" * deep)
+    rest = word("E" * draw(st.integers(0, 2)), origin=(wide + 1, 0, 0))
+    reach = st.integers(-deep - 1, deep + 1)
+    far = (draw(st.integers(0, wide)), draw(reach), draw(reach))
+    before = (-1, 0, 0)
+    past = taken(limb) | taken(rest)
+    assume(far not in past)
+    start = np.vstack([led(draw, before, far, past), limb, rest])
+    joint = len(start) - len(rest) - len(limb)
+    return start, (Move.DOOR, joint, joint + len(limb) - 1, draw(st.sampled_from([1, -1])))
 
 
 @given(limbs())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=80, deadline=None)
 def test_a_door_whose_rings_are_free_keeps_clear(limb):
     start, row = limb
     assert row in list(doors(start))

@@ -1,5 +1,7 @@
-"""Random simple lattice paths for property tests: wandering, crumpled, stretched, coiled."""
+"""Random simple lattice paths for property tests: wandering, crumpled, stretched, coiled, led."""
 
+from collections import deque
+from collections.abc import Collection, Sequence
 from typing import Any
 
 import numpy as np
@@ -80,3 +82,27 @@ def paths(draw: Any, max_voxels: int = 14) -> NDArray[np.int64]:
     voxels = lu.layered_path(lu.VoxelSolid(occupancy), starts=1).voxels
     assume(len(voxels) > 3)
     return voxels.astype(np.int64)
+
+
+def way(
+    start: Voxel, goal: Voxel, taken: Collection[Voxel], order: Sequence[int], reach: int = 12
+) -> list[Voxel]:
+    """A shortest way past the voxels taken, at most so many steps; empty if there is none.
+
+    Of several shortest ways, `order`, of the six directions, picks one.
+    """
+    came: dict[Voxel, Voxel] = {start: start}
+    todo = deque([(start, 0)])
+    while todo and goal not in came:
+        here, n_steps = todo.popleft()
+        near = beside(here)
+        for voxel in [near[k] for k in order]:
+            if voxel not in came and voxel not in taken and n_steps < reach:
+                came[voxel] = here
+                todo.append((voxel, n_steps + 1))
+    if goal not in came:
+        return []
+    found = [goal]
+    while found[-1] != start:
+        found.append(came[found[-1]])
+    return found[::-1]
