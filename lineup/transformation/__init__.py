@@ -1,6 +1,7 @@
 """From one shape of the chain to another (Sections 6 and 7): shape A, straight line, shape B."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import chain, islice
 
 import numpy as np
@@ -75,7 +76,7 @@ def transform(
     bent = [name for name, motion in (("A", a), ("B", b)) if not motion.straight]
     if bent:
         return _refused(a, b, f"the motion of {' and '.join(bent)} does not end straight")
-    through_line = joined(a, _aligned(a, reversal(b)), DONE)
+    through_line = replace(joined(a, _aligned(a, reversal(b)), DONE), goal=b.start)
     if within is None:
         return through_line
     misses = []
@@ -87,7 +88,7 @@ def transform(
             continue
         for turn in TURNS:
             if (np.abs(turn) @ certificate.extent <= within).all():
-                return turned(motion, turn)
+                return replace(turned(motion, turn), goal=b.start)
         misses.append(certificate.extent)
         if len(misses) > MISSES:
             break
@@ -97,7 +98,7 @@ def transform(
 def _why_not(misses: list[tuple[float, float, float]], within: tuple[int, int, int]) -> str:
     if len(misses) < 2:  # the way through the line is the first
         return "no motion of either shape was found that lets go at one end alone"
-    sizes = " x ".join(f"{size:.0f}" for size in min(misses, key=max))
+    sizes = " x ".join(f"{size:.1f}" for size in min(misses, key=max))
     return f"the smallest box found is {sizes} pitches, and {within} does not hold it"
 
 
