@@ -289,8 +289,10 @@ class _Trial:
         ahead = slice(None, None, 1 if head == last else -1)
         steps = grid.DIRECTIONS[values].astype(np.int64)
         hit = self._hit(self.pose[ahead], steps)
-        if hit:
-            steps = steps[: max(hit.vertex - last, 1)]
+        steps = steps[: max(hit.vertex - last, 1)] if hit else steps
+        n_held = self._n_held(self.pose[head] + steps.cumsum(axis=0))
+        if n_held + 1 < len(steps):
+            steps, hit = steps[: n_held + 1], None
         pulled = _pulls.carry_out(self.pose[ahead], steps, self.diameter, self.max_bend_deg)
         where = first + pulled.made
         heads = self.pose[head] + np.vstack([0 * steps[:1], steps[: pulled.made]]).cumsum(axis=0)
@@ -315,6 +317,13 @@ class _Trial:
                 where,
             )
         return self._refuse(f"bend of {pulled.bend_deg:g} degrees round a corner or U", where)
+
+    def _n_held(self, heads: NDArray[np.int64]) -> int:
+        """How many pulls stay in the box, of those that lead an end to these positions."""
+        low = np.minimum(self.box[0], np.minimum.accumulate(heads))
+        high = np.maximum(self.box[1], np.maximum.accumulate(heads))
+        out = (high - low + 1 > self.within + _ROUNDING).any(axis=1)
+        return int(out.argmax()) if out.any() else len(heads)
 
     def _hit(self, pose: NDArray[np.int64], steps: NDArray[np.int64]) -> _obstacles.Hit | None:
         """The first obstacle on the track of pulls by the last joint of a pose."""
