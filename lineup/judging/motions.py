@@ -102,10 +102,7 @@ def certify(
     >>> verdict.reason, verdict.most_bent, verdict.extent
     ('certified', (-1, 1), (4.0, 3.0, 1.0))
     """
-    if not (np.isfinite(diameter) and diameter > 0):
-        raise ValueError(f"diameter must be a positive number of voxels, got {diameter}")
-    if not 0 < max_bend_deg <= 180:
-        raise ValueError(f"max_bend_deg must be above 0 and at most 180, got {max_bend_deg}")
+    check_limits(diameter, max_bend_deg)
     box = np.array([np.inf] * 3 if within is None else within, np.float64)
     if box.shape != (3,) or not (box > 0).all():
         raise ValueError(f"within must be three positive numbers of voxels, got {within}")
@@ -113,6 +110,14 @@ def certify(
         raise ValueError(f"unknown joints {joints!r}; known: {', '.join(JOINTS)}")
     verdict = _Trial(motion, diameter, max_bend_deg, box, obstacles).verdict()
     return verdict if joints == "free" else _slotted(motion, verdict)
+
+
+def check_limits(diameter: float | None, max_bend_deg: float | None) -> None:
+    """Raise a ValueError if no motion can be judged at this diameter or this bend."""
+    if diameter is not None and not (np.isfinite(diameter) and diameter > 0):
+        raise ValueError(f"diameter must be a positive number of voxels, got {diameter}")
+    if max_bend_deg is not None and not 0 < max_bend_deg <= 180:
+        raise ValueError(f"max_bend_deg must be above 0 and at most 180, got {max_bend_deg}")
 
 
 def _slotted(motion: Motion, verdict: Certificate) -> Certificate:
