@@ -1,11 +1,13 @@
 """The judge of motions: whether the chain keeps clear of itself at every instant (Section 6)."""
 
 from dataclasses import replace
+from types import NoneType
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import grid
+from .._record import of_kind
 from ..joints import JOINTS, slot_violations
 from ..kinematics import Move
 from ..solid import Certificate, Motion, Obstacles
@@ -90,7 +92,7 @@ def certify(
     ------
     ValueError
         If `diameter` is not positive, `max_bend_deg` is not in (0, 180], `within` is not three
-        positive numbers, or `joints` is none of those.
+        positive numbers, `joints` is none of those, or `motion` is no Motion.
 
     Examples
     --------
@@ -102,6 +104,8 @@ def certify(
     >>> verdict.reason, verdict.most_bent, verdict.extent
     ('certified', (-1, 1), (4.0, 3.0, 1.0))
     """
+    of_kind(motion, Motion)
+    of_kind(obstacles, Obstacles, NoneType)
     check_limits(diameter, max_bend_deg)
     box = np.array([np.inf] * 3 if within is None else within, np.float64)
     if box.shape != (3,) or not (box > 0).all():
