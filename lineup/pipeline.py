@@ -15,6 +15,7 @@ import numpy as np
 import pandas as pd
 
 from . import grid
+from ._record import listed, of_kind
 from .bounds import path_bound
 from .catalog import model
 from .folding import fold
@@ -140,6 +141,7 @@ def add(
     >>> design.table["model"].tolist(), [len(folding.path) for folding in design.foldings]
     (['duck', 'mug'], [80, 80])
     """
+    of_kind(design, Design)
     lengths = sorted({len(folding.path) for folding in design.foldings})
     if len(lengths) != 1 or lengths[0] % 2:
         got = f"foldings of {', '.join(map(str, lengths))} voxels" if lengths else "no folding"
@@ -259,8 +261,7 @@ def _store(result: _Result, name: str, folder: Path) -> None:
 
 def _names(models: Sequence[Source], first: int = 1) -> list[str]:
     """What each source is called in tables and file names, a nameless one by its number."""
-    if isinstance(models, str | os.PathLike):
-        raise ValueError(f"models must be a list, got {models!r} alone; put it in brackets")
+    listed(models, "models")
     if len(models) == 0:
         raise ValueError("there are no models; give at least one name, file, mesh or solid")
     return [

@@ -364,6 +364,8 @@ def _document_of(header: _Header) -> type[_Solid | _Path | _Motion | _Folding | 
 
 
 def _design_file(file: str | os.PathLike[str]) -> Path:
+    if not isinstance(file, str | os.PathLike):
+        raise ValueError(f"a file is named by a text or a path, got {type(file).__name__}")
     path = Path(file)
     return path / "design.json" if path.is_dir() else path
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
@@ -94,19 +95,41 @@ def transform(
 
 def verify(
     places: Annotated[list[Path], typer.Argument(metavar="FILE_OR_FOLDER...")],
-    diameter: Annotated[float, typer.Option(help="Bar diameter, in voxels.")] = 0.999,
-    max_bend: Annotated[float, typer.Option(help="Largest bend, in degrees.")] = 90.0,
+    diameter: Annotated[
+        float | None, typer.Option(help="Bar diameter, in voxels; else what each motion claims.")
+    ] = None,
+    max_bend: Annotated[
+        float | None, typer.Option(help="Largest bend, in degrees; else what each motion claims.")
+    ] = None,
 ) -> None:
     """Judge stored results anew."""
-    from ..verification import stored_files, verdicts
+    from ..judging import check_limits
+    from ..verification import stored_files
 
+    check_limits(diameter, max_bend)
     failures = []
     for file in [file for place in places for file in stored_files(place)]:
-        for part, verdict in verdicts(file, diameter, max_bend):
-            line = f"{file} {part}: {told(verdict)}"
-            typer.echo(f"{'ok   ' if verdict.ok else 'FAILS'} {line}")
-            failures += [] if verdict.ok else [line]
+        for ok, line in _verified(file, diameter, max_bend, alone=places == [file]):
+            typer.echo(f"{'ok   ' if ok else 'FAILS'} {line}")
+            failures += [] if ok else [line]
     end(failures)
+
+
+def _verified(
+    file: Path, diameter: float | None, max_bend: float | None, alone: bool
+) -> Iterator[tuple[bool, str]]:
+    """What to say of each part of a file; among others, one that cannot be read just fails."""
+    from ..verification import verdicts
+
+    parts = verdicts(file, diameter, max_bend)
+    try:
+        for part, verdict in parts:
+            yield verdict.ok, f"{file} {part}: {told(verdict)}"
+    except (OSError, ValueError) as error:
+        if alone:
+            raise
+        fault = str(error)
+        yield False, fault if fault.startswith(str(file)) else f"{file}: {fault}"
 
 
 def models(

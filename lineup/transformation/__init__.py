@@ -6,6 +6,7 @@ from itertools import chain, islice
 
 import numpy as np
 
+from .._record import of_kind
 from ..folding.pulling import is_pulled
 from ..grid import IntArray, bar_directions
 from ..judging import certify
@@ -103,6 +104,7 @@ def _why_not(misses: list[tuple[float, float, float]], within: tuple[int, int, i
 
 
 def _motion(item: Motion | Folding) -> Motion:
+    of_kind(item, Motion, Folding)
     return item.motion if isinstance(item, Folding) else item
 
 
