@@ -335,6 +335,48 @@ def test_plans_keep_the_rules_and_come_back_from_their_motions(seed, n, bias):
     assert np.array_equal(plan.motion_of(voxels, again).moves, motion.moves)
 
 
+def legal_play(rng, voxels, spare):
+    """A plan of legal steps taken at random, with up to `spare` swings beside the last bar."""
+    states = [starts_of(len(voxels))[rng.integers(36)]]
+    for _ in range(4 * len(voxels)):
+        gap = states[-1][1] - states[-1][0]
+        spare -= gap == 1
+        steps = [s for s in steps_from(len(voxels), states[-1]) if s[0] < s[1]]
+        ways = [s for s in steps if rod_rule(voxels, states[-1], s) == ""]
+        peels = [s for s in ways if s[1] - s[0] < gap]
+        if not ways or spare < 0:
+            break
+        among = peels if peels and rng.random() < 0.8 else ways
+        states.append(among[rng.integers(len(among))])
+    return np.array(states, np.int32)
+
+
+@given(seeds, st.integers(2, 12), st.integers(0, 3))
+@settings(max_examples=100)
+def test_whatever_is_legal_comes_back_from_its_motion(seed, n, spare):
+    rng = np.random.default_rng(seed)
+    voxels = random_walk(rng, n, side=4)
+    if len(voxels) < 2:
+        return
+    states = legal_play(rng, voxels, spare)
+    motion = plan.motion_of(voxels, states)
+    check_motion(motion)
+    if motion.straight:
+        again = plan.states_of(motion)
+        assert rod_fault(voxels, again) == ""
+        assert np.array_equal(plan.motion_of(voxels, again).moves, motion.moves)
+
+
+@pytest.mark.parametrize("spare", [[], [2], [2, 1], [2, 1, 5, 1]])
+def test_a_rod_may_swing_for_no_need_when_one_bar_is_left(spare):
+    states = [[0, 3, 0, 1], [0, 2, 0, 1], [0, 1, 0, 1], *([0, 1, 0, f] for f in spare)]
+    assert rod_fault(walk("EUN"), states) == ""
+    motion = plan.motion_of(walk("EUN"), np.array(states, np.int32))
+    assert motion.moves[1:, 3].tolist() == [*spare, 0]
+    assert lu.certify(motion).ok
+    assert plan.states_of(motion)[:, 3].tolist() == [1, 1, 1, *spare]
+
+
 def test_states_of_refuses_other_motions():
     stuck = lu.unfold(lu.VoxelPath(walk(LOCKED)), method="peel", rounds=0)
     tilted = lu.unfold(lu.VoxelPath(walk("ENUU")), method="accordion")

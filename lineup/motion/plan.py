@@ -1,5 +1,6 @@
 """Peel plans of a lattice path, and the motions they stand for (Section 6)."""
 
+from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
@@ -123,11 +124,12 @@ def _plan_behind(motion: Motion) -> IntArray:
             states.append(tuple(state))
     if state[0] == state[1]:
         return none
-    let_go(1, state[0] + 1)
-    plan = _without_last_swings(np.array(states, np.int32))
+    let_go(1, state[0] + 1)  # the rest is straight, so either end may take it
     grid, cells = path_grid(motion.start)
-    same = np.array_equal(motion_of(motion.start, plan).moves, motion.moves)
-    return plan if same and keeps_rules(grid, link(grid, cells), plan) else none
+    for plan in _ended(np.array(states, np.int32)):
+        if np.array_equal(motion_of(motion.start, plan).moves, motion.moves):
+            return plan if keeps_rules(grid, link(grid, cells), plan) else none
+    return none
 
 
 def _first_rod(motion: Motion, end: int) -> int:
@@ -140,7 +142,11 @@ def _first_rod(motion: Motion, end: int) -> int:
     return int(bars[-end] + flip) % 6
 
 
-def _without_last_swings(states: IntArray) -> IntArray:
-    """A plan cut where its last joint is let go."""
-    folded = states[:, 1] - states[:, 0]
-    return states[: int(np.argmax(folded == folded[-1])) + 1]
+def _ended(states: IntArray) -> Iterator[IntArray]:
+    """The plan without the last two states, the last, or none: `motion_of` swings the last bar.
+
+    No more than that, for rods may swing behind the last bar for no need.
+    """
+    alone = int(np.argmax(states[:, 1] - states[:, 0] == 1)) + 1
+    for stop in range(max(alone, len(states) - 2), len(states) + 1):
+        yield states[:stop]
