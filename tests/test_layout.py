@@ -25,6 +25,7 @@ ORDER = [
         "solid",
         "kinematics",
         "joints",
+        "words",
         "notation",
         "judging",
     ),
