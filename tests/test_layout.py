@@ -33,6 +33,7 @@ ORDER = [
     *("layered", "bounds", "subset_sums", "contraction"),
     *("motion", "folding", "trimming", "transformation", "scenarios"),
     *("storage", "verification", "pipeline", "_sources", "engines", "sweep", "tables", "draw"),
+    "viewer",
     *("_progress", "cli"),
 ]
 
