@@ -119,6 +119,10 @@ def until(page, expression):
 
 def shot(page, selector="canvas.view"):
     until(page, "!p.waiting")
+    return seen(page, selector)
+
+
+def seen(page, selector):
     pixels = Image.open(BytesIO(page.locator(selector).screenshot())).convert("RGB")
     return np.asarray(pixels).astype(int)
 
@@ -193,6 +197,28 @@ def test_play_runs_to_the_end_and_back(view):
     view.locator("canvas.view").focus()
     view.keyboard.press("Space")
     until(view, "p.state.time === 0")
+
+
+def test_a_film_is_one_picture_a_frame_and_then_rests(view):
+    ask(view, "p.setSpeed(20)")
+    drawn, shown = view.evaluate("""async () => {
+      const p = document.getElementById('player').player;
+      const before = p.frames;
+      let shown = 0;
+      const count = () => { shown += 1; if (p.state.playing) requestAnimationFrame(count); };
+      p.play();
+      await new Promise((done) => {
+        p.on((name, value) => name === 'playing' && !value && done());
+        requestAnimationFrame(count);
+      });
+      return [p.frames - before, shown];
+    }""")
+    assert shown > 10
+    assert drawn <= shown + 1
+    until(view, "!p.waiting")
+    still = ask(view, "p.frames")
+    view.wait_for_timeout(200)
+    assert ask(view, "p.frames") == still
 
 
 def nearest_block(page):

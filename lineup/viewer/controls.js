@@ -40,6 +40,10 @@ const VIEW_LABEL =
   "The chain in 3D. Drag to turn it, use the wheel to come nearer, hold shift and drag to move " +
   "it, click a block to see its number.";
 
+const STRIP_LABEL =
+  "What moves when: above, of the last end of the chain, and below, of the first. " +
+  "Dark ticks: another layer.";
+
 const MARKUP = `
 <div class="stage">
   <canvas class="view" tabindex="0" role="img" aria-label="${VIEW_LABEL}"></canvas>
@@ -56,7 +60,7 @@ const MARKUP = `
 <div class="panel">
   <div class="words"><div><p class="where"></p><p class="what"></p></div>
     <button type="button" class="more" data-do="details" aria-expanded="false">Details</button></div>
-  <canvas class="strip" aria-hidden="true"></canvas>
+  <canvas class="strip" aria-hidden="true" title="${STRIP_LABEL}"></canvas>
   <input class="time" type="range" min="0" step="any" aria-label="Moment of the motion">
   <div class="row">
     <div class="buttons">

@@ -87,7 +87,7 @@ export function aboutBar({ motion, startPose, pose, modes }, bar, seen) {
 
 /** How far the chain reaches, in words. */
 export function reachText(pose) {
-  return `whole chain, ${count(reachOf(pose))} voxels across`;
+  return `whole chain, ${count(reachOf(pose))} voxels`;
 }
 
 function triple(pose, joint) {

@@ -24,19 +24,20 @@ export function flatScene(canvas) {
     context.lineCap = "round";
     const widthOf = (k) => {
       const thick = STYLES[style][k % 2] * scale / spots.depth[k];
-      return Math.max(k === picked ? 5 : 1.2, thick * (k === picked ? 1.18 : 1));
+      const thinnest = (k === picked ? 5 : 1.8) * (width / (canvas.clientWidth || width));
+      return Math.max(thinnest, thick * (k === picked ? 1.18 : 1));
     };
     for (const k of order) {
       const wide = widthOf(k);
       context.beginPath();
       context.moveTo(spots.x[k], spots.y[k]);
       context.lineTo(spots.x[k + 1], spots.y[k + 1]);
-      if (wide > 3) {
+      if (wide > 4) {
         context.lineWidth = wide;
         context.strokeStyle = OUTLINE;
         context.stroke();
       }
-      context.lineWidth = wide > 3 ? 0.78 * wide : wide;
+      context.lineWidth = wide > 4 ? 0.78 * wide : wide;
       context.strokeStyle = rgb(k === picked ? PICKED : shadeOf(colours, k));
       context.stroke();
     }

@@ -26,7 +26,7 @@ export function colourModes(motion, startPose, extra = {}) {
     { key: "chain", label: "along the chain", ...ends, ...mode(along, turbo) },
     { key: "safe", label: "along the chain, for all eyes", ...ends, ...mode(along, viridis) },
     { key: "layer", label: "layers", low: "bottom", high: "top", ...mode(scaled(heights), turbo) },
-    { key: "part", label: "blocks and joints", low: "block", high: "joint",
+    { key: "part", label: "in and between blocks", low: "in a block", high: "between two",
       ...mode(along.map((_, i) => i % 2), parts) },
     ...Object.entries(extra).map(([name, values]) => ({
       key: `by ${name}`, label: name, ...limitsOf(values), values,

@@ -360,6 +360,10 @@ export class Player {
   changed() {
     this.dirty = true;
     this.fineAt = null;
+    this.wait();
+  }
+
+  wait() {
     if (!this.waiting && !this.gone) this.waiting = requestAnimationFrame((now) => this.tick(now));
   }
 
@@ -371,13 +375,11 @@ export class Player {
       this.dirty = false;
       this.draw();
       this.fineAt = now + STILL_MS;
-    } else if (now >= this.fineAt) {
+    } else if (this.fineAt !== null && now >= this.fineAt) {
       this.fineAt = null;
       if (this.quality === 0) this.draw(true);
     }
-    if (this.state.playing || this.fineAt !== null) {
-      this.waiting = requestAnimationFrame((later) => this.tick(later));
-    }
+    if (this.state.playing || this.fineAt !== null) this.wait();
   }
 
   /** Move on in time since the last frame; where less motion is asked for, by steps of a second. */

@@ -47,7 +47,7 @@ export function storyOf(motion, visits = []) {
   const second = layersOf(motion.goal ?? last);
   for (let k = 0; k < nMoves; k++) {
     const row = motion.rows[k];
-    story.acting[k] = actingBar(row, nJoints);
+    story.acting[k] = actingBar(row, nJoints, begin.shift[k]);
     const ofEnd = backwards || (story.hasGoal && begin.share[k] === 0);
     if (row.kind === TILT || row.kind === BEND || (ofEnd && end.share[k + 1] === 0)) continue;
     const place = (ofEnd ? end : begin).place[k];
@@ -85,11 +85,12 @@ function sideOf({ kind, joint, other }) {
   return other > joint ? 1 : 0;
 }
 
-function actingBar({ kind, joint, other }, nJoints) {
+function actingBar({ kind, joint, other }, nJoints, shift) {
   if (kind === PEEL || kind === SWING) return Math.min(joint, other);
   if (kind === DOOR) return (joint + other) >> 1;
-  if (kind === PULL) return joint ? 0 : nJoints - 2;
-  return (nJoints - 1) >> 1;
+  if (kind !== PULL) return (nJoints - 1) >> 1;
+  // What passes the place where the leading end was at first.
+  return Math.max(0, Math.min(nJoints - 2, (joint ? nJoints - 2 : 0) - shift));
 }
 
 function layersOf(path) {
@@ -102,8 +103,9 @@ function layersOf(path) {
 /**
  * How long each place of a shape is kept: of the first pose, or of the last one, seen backwards.
  *
- * `place[k]` is the place that move k lets go of (or reaches), `share[k]` how many of the bends
- * of the shape are there after k moves, `inner[k]` the joints [low, high] that then are in it.
+ * `place[k]` is the place that move k lets go of (or reaches), `shift[k]` how far the chain has
+ * then glided out of its places, `share[k]` how many of the bends of the shape are there after k
+ * moves, `inner[k]` the joints [low, high] that are in it.
  */
 function shapeOf(motion, pose, isEnd) {
   const { nMoves, nJoints } = motion;
@@ -113,6 +115,7 @@ function shapeOf(motion, pose, isEnd) {
   const share = new Float32Array(nMoves + 1);
   const inner = Array.from({ length: nMoves + 1 });
   const place = new Int32Array(nMoves);
+  const shifts = new Int32Array(nMoves);
   let [low, high, shift, left] = [0, nJoints - 1, 0, nBends];
   const letGo = (joint) => {
     if (joint < 0 || joint >= nJoints || gone[joint]) return;
@@ -127,6 +130,7 @@ function shapeOf(motion, pose, isEnd) {
     const index = isEnd ? nMoves - 1 - k : k;
     const row = motion.rows[index];
     const { kind, joint, other } = row;
+    shifts[index] = shift;
     if (kind === PULL) {
       const byLast = (joint > 0) !== isEnd;
       place[index] = byLast ? shift : nJoints - 1 + shift;
@@ -145,7 +149,7 @@ function shapeOf(motion, pose, isEnd) {
       if (kind !== DOOR) [low, high] = narrowed(low, high, row);
     }
   }
-  return { nBends, share, inner, place };
+  return { nBends, share, inner, place, shift: shifts };
 }
 
 /** The joints of low..high that a peel leaves at rest, or the larger part beside a swing. */
