@@ -20,7 +20,7 @@ export function focusPath(motion, story) {
   const shapes = [[begin, 0], [end, motion.nMoves]].filter(([shape]) => shape.nBends);
   const homes = shapes.map(([, time]) => sidesOf(boxOf(joints(motion, time, out))));
   const home = homes.reduce((a, b) => a.map((side, c) => Math.max(side, b[c])), [2, 2, 2]);
-  const few = Math.max(8, 0.03 * motion.nJoints);
+  const few = Math.max(8, 0.01 * motion.nJoints);
   const whole = [];
   const raw = [];
   for (let i = 0; i <= SAMPLES; i++) {
@@ -37,7 +37,7 @@ export function focusPath(motion, story) {
   const compact = Math.max(...whole.flatMap(sidesOf)) < 0.4 * motion.nJoints;
   const seen = raw.map((box, i) => compact
     ? { ...near(whole, i, SPREAD).reduce(union), line: 0 }
-    : { ...box, line: Math.max(...near(raw, i, 2 * SPREAD).map(({ line }) => line)) });
+    : { ...box, line: Math.max(...near(raw, i, SPREAD).map(({ line }) => line)) });
   return { boxes: seen.map((_, i) => blended(seen, i)), turn: uprightTurn(motion, story) };
 }
 

@@ -44,7 +44,7 @@ const STRIP_LABEL =
   "What moves when: above, of the last end of the chain, and below, of the first. " +
   "Dark ticks: another layer.";
 
-const MARKUP = `
+const MARKUP = `<div class="frame">
 <div class="stage">
   <canvas class="view" tabindex="0" role="img" aria-label="${VIEW_LABEL}"></canvas>
   <div class="ring" hidden></div>
@@ -97,7 +97,7 @@ const MARKUP = `
   <section><h3>This moment</h3><dl class="moment"></dl></section>
   <section><h3>This motion</h3><dl class="file"></dl></section>
   <section><h3>Keys</h3><dl>${keys()}</dl></section>
-</aside>`;
+</aside></div>`;
 
 /** Fill an element with the player's markup and return its parts by name. */
 export function controls(root) {
