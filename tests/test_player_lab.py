@@ -11,7 +11,7 @@ from contextlib import contextmanager
 
 import numpy as np
 import pytest
-from test_player import BROWSER, colourful, launched, seen
+from browser import BROWSER, colourful, launched, seen
 
 import lineup as lu
 
