@@ -61,6 +61,7 @@ for (const [name, { poses }] of Object.entries(golden)) {
 
   test(`${name}: shares of the shapes run from all to nothing`, () => {
     const { begin, end, vague } = storyOf(motions[name]);
+    assert.equal(vague, /[bt]/.test(golden[name].motion.moves));
     if (vague) return;
     const falls = (shares) => shares.every((share, k) => k === 0 || share <= shares[k - 1]);
     assert.ok(falls(begin.share) && falls(end.share.toReversed()));
@@ -104,6 +105,25 @@ test("layers and words of a motion by hand", async () => {
   );
   assert.match(told(motion, story, 3)[0], /^Straight after 3 moves: a line of 7 voxels/);
   assert.match(told(motion, story, 0)[0], /^Folded: one chain of 3 blocks, 7 voxels/);
+});
+
+test("the two shapes of a motion are called by its name", async () => {
+  const motion = motions.from_shape_to_shape;
+  const { nMoves } = motion;
+  const named = storyOf(motion, [], "bunny to duck");
+  assert.match(told(motion, named, 0.5)[0], /left of bunny: 100 %$/);
+  assert.match(told(motion, named, nMoves - 0.5)[0], /made of duck: \d+ %$/);
+  assert.equal(told(motion, named, nMoves)[0], `There after ${nMoves} moves: duck`);
+  assert.match(told(motion, storyOf(motion, [], "x"), 0.5)[0], /left of the first shape/);
+});
+
+test("a motion without moves says why", async () => {
+  const motion = await readMotion({ ...STAIR, moves: "" });
+  const story = storyOf(motion);
+  assert.equal(told(motion, story, 0)[1], "It has no moves: a part of one.");
+  assert.deepEqual(story.ticks, []);
+  const { from, to } = focusAt(focusPath(motion, story), 0, joints(motion, 0));
+  assert.ok([...from, ...to].every(Number.isFinite));
 });
 
 test("a motion that stops short says why", async () => {

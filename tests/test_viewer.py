@@ -244,6 +244,9 @@ def test_bad_use_is_refused(folding, tmp_path, file, options, says):
 def test_only_motions_are_shown(folding, tmp_path):
     with pytest.raises(ValueError, match="a Motion or a Folding, got a VoxelPath"):
         lu.write_player(folding.path, tmp_path / "x.html")
+    still = lu.Motion(np.zeros((1, 3), int), np.empty((0, 4), int), 1.0, 90.0, True, "straight")
+    with pytest.raises(ValueError, match="two joints or more, got 1"):
+        lu.write_player(still, tmp_path / "x.html")
     with pytest.raises(FileNotFoundError, match="no folder"):
         lu.write_player(folding, tmp_path / "nowhere" / "x.html")
 

@@ -29,7 +29,8 @@ def play(
         verdict = certify(motion, motion.diameter, motion.max_bend_deg)
         out.mkdir(parents=True, exist_ok=True)
         name = stored_name(file)
-        written = write_player(stored, out / f"{name}.html", certificate=verdict)
+        called = name.replace("-to-", " to ")
+        written = write_player(stored, out / f"{name}.html", certificate=verdict, name=called)
         typer.echo(f"{len(motion)} moves, {told(verdict)}")
         typer.echo(f"written: {written}")
         short += [] if verdict.ok else [f"{name}: {told(verdict)}"]

@@ -80,6 +80,7 @@ def write_player(
         What `certify` says of this motion. Without one the page says that it is not judged.
     name : str, optional
         What the page calls the motion; the name of the file without its ending if not given.
+        ``"A to B"`` names the two shapes of a motion that has a goal.
     colours : mapping, optional
         Numbers by which the bars can be coloured, (P - 1,) each, by name, such as
         ``{"stress, MPa": stress}``; nan where nothing is known.
@@ -92,8 +93,8 @@ def write_player(
     Raises
     ------
     ValueError
-        If `item` is something else, the certificate is of another motion, there is not one
-        number for each bar, or the file is not named .html.
+        If `item` is something else or has less than two joints, the certificate is of another
+        motion, there is not one number for each bar, or the file is not named .html.
     FileNotFoundError
         If the folder to write into does not exist.
 
@@ -133,6 +134,8 @@ def shown(
     if not isinstance(item, (Motion, Folding)):
         raise ValueError(f"the player shows a Motion or a Folding, got a {type(item).__name__}")
     motion = item.motion if isinstance(item, Folding) else item
+    if len(motion.start) < 2:
+        raise ValueError(f"the player shows two joints or more, got {len(motion.start)}")
     if certificate is not None and certificate.ok and certificate.moves_checked != len(motion):
         raise ValueError(
             f"the certificate is of another motion: {certificate.moves_checked} moves were "

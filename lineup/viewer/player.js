@@ -50,7 +50,7 @@ export async function openPage(root, text) {
 export class Player {
   constructor(root, shown, motion, options) {
     Object.assign(this, { root, shown, motion, options, listeners: [] });
-    this.story = storyOf(motion, shown.visits ?? []);
+    this.story = storyOf(motion, shown.visits ?? [], shown.name);
     this.startPose = joints(motion, 0);
     this.pose = joints(motion, 0);
     this.focus = focusPath(motion, this.story);

@@ -17,23 +17,26 @@ const FEWEST = 10; // moves of a layer that is worth a stop, in a motion of hund
 /**
  * Per move: `layer` and `visit` (-1 for none), `side` (the end of the chain, 0 or 1) and
  * `acting`, the bar that the strip shows; per moment
- * between two moves: `left` and `made`, the shares of the two shapes (NaN where a motion bends),
+ * between two moves: `left` and `made`, the shares of the two shapes (of no meaning if it is `vague`),
  * `inner`, the joints that are in the larger one; and `ticks`, the moments where a layer begins.
  *
- * `visits` are rows [start, stop, piece, depth] of the path that the motion starts at.
+ * `visits` are rows [start, stop, piece, depth] of the path that the motion starts at; of a
+ * motion whose name is `A to B` the two shapes are called so.
  */
-export function storyOf(motion, visits = []) {
+export function storyOf(motion, visits = [], name = "") {
   const { nMoves, nJoints } = motion;
   const last = joints(motion, nMoves);
   const begin = shapeOf(motion, joints(motion, 0), false);
   const end = shapeOf(motion, last, true);
-  const vague = motion.rows.some((row) => row.kind === BEND);
+  const vague = motion.rows.some((row) => row.kind === BEND || row.kind === TILT);
+  const [, ...names] = /^(.+) to (.+)$/.exec(name) ?? ["", "the first shape", "the second shape"];
   const backwards = begin.nBends === 0 && end.nBends > 0;
   const story = {
     backwards,
     hasGoal: motion.goal !== null && begin.nBends > 0,
     straight: end.nBends === 0,
     vague,
+    names,
     begin,
     end,
     nLayers: 0,
@@ -203,7 +206,9 @@ export function count(number) {
 /** What happens at a time: [a line on where we are, a line on what turns]. */
 export function told(motion, story, time) {
   const { nMoves } = motion;
-  if (time <= 0) return [opening(motion, story), nMoves ? "Press Play." : motion.reason];
+  if (time <= 0) {
+    return [opening(motion, story), nMoves ? "Press Play." : `It has no moves: ${motion.reason}.`];
+  }
   if (time >= nMoves) return [closing(motion, story), ending(motion, story)];
   const [move] = momentOf(motion, time);
   const parts = [`Move ${count(move + 1)} of ${count(nMoves)}`];
@@ -217,24 +222,25 @@ export function told(motion, story, time) {
   return [parts.join(" · "), explained(motion, move)];
 }
 
-function foldedShare({ begin, end, hasGoal, backwards }, move) {
+function foldedShare({ begin, end, hasGoal, backwards, names }, move) {
   const percent = (share) => `${Math.round(100 * share)} %`;
   if (backwards) return `folded: ${percent(end.share[move])}`;
   if (!hasGoal) return `still folded: ${percent(begin.share[move])}`;
-  if (begin.share[move] > 0) return `left of the first shape: ${percent(begin.share[move])}`;
-  return `made of the second shape: ${percent(end.share[move])}`;
+  if (begin.share[move] > 0) return `left of ${names[0]}: ${percent(begin.share[move])}`;
+  return `made of ${names[1]}: ${percent(end.share[move])}`;
 }
 
 function opening({ nJoints }, { backwards, begin, end }) {
-  const chain = `${count(nJoints >> 1)} blocks, ${count(nJoints)} voxels`;
+  const blocks = nJoints >> 1 === 1 ? "block" : "blocks";
+  const chain = `${count(nJoints >> 1)} ${blocks}, ${count(nJoints)} voxels`;
   if (backwards || (!begin.nBends && !end.nBends)) return `A straight chain of ${chain}`;
   return `Folded: one chain of ${chain}`;
 }
 
-function closing({ nMoves, nJoints }, { straight, backwards, hasGoal }) {
+function closing({ nMoves, nJoints }, { straight, backwards, hasGoal, names }) {
   const moves = `after ${count(nMoves)} ${nMoves === 1 ? "move" : "moves"}`;
   if (straight) return `Straight ${moves}: a line of ${count(nJoints)} voxels`;
-  if (hasGoal) return `The second shape is reached ${moves}`;
+  if (hasGoal) return `There ${moves}: ${names[1]}`;
   return `${backwards ? "Folded" : "Here it ends,"} ${moves}`;
 }
 

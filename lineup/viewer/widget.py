@@ -27,6 +27,8 @@ def player(
     """The motion player as a widget for JupyterLab, the last expression of a cell.
 
     Where nothing runs it, on a page that shows a saved notebook, a still picture is in its place.
+    JupyterLab shows that in a notebook which it does not trust; in one that it does, it needs the
+    cell to be run again, or the state of widgets to be saved with the notebook.
 
     Parameters
     ----------
@@ -87,13 +89,16 @@ def _widget_class() -> type[anywidget.AnyWidget]:
         def __init__(self, item: Motion | Folding, **traits: Any) -> None:
             super().__init__(**traits)
             self._item = item
+            self._picture: bytes | None = None
 
         def _repr_mimebundle_(self, **options: Any) -> Any:
             bundle = super()._repr_mimebundle_(**options)
             if bundle is None:
                 return None
             data, *rest = bundle if isinstance(bundle, tuple) else (bundle,)
-            data = {**data, "image/png": _still(self._item)}
+            if self._picture is None:
+                self._picture = _still(self._item)
+            data = {**data, "image/png": self._picture}
             return (data, *rest) if rest else data
 
     return Player
