@@ -33,11 +33,10 @@ export function focusPath(motion, story) {
     const least = home.map((side) => 0.6 * side);
     raw.push({ ...(line ? whole[i] : grown(boxOf(pose, low, high), least)), line });
   }
-  const near = (list, i, n) => list.slice(Math.max(0, i - n), i + n + 1);
   const compact = Math.max(...whole.flatMap(sidesOf)) < 0.4 * motion.nJoints;
   const seen = raw.map((box, i) => compact
-    ? { ...near(whole, i, SPREAD).reduce(union), line: 0 }
-    : { ...box, line: Math.max(...near(raw, i, SPREAD).map(({ line }) => line)) });
+    ? { ...about(whole, i, SPREAD).reduce(union), line: 0 }
+    : { ...box, line: Math.max(...about(raw, i, SPREAD).map(({ line }) => line)) });
   return { boxes: seen.map((_, i) => blended(seen, i)), turn: uprightTurn(motion, story) };
 }
 
@@ -144,11 +143,17 @@ function straightEnd(i, begin, end) {
   return (!end.nBends && i >= SAMPLES - SPREAD) || (!begin.nBends && i <= SPREAD);
 }
 
+/** The moments about moment i, as many before as after it; so the first and last stand alone. */
+function about(list, i, most) {
+  const n = Math.min(most, i, list.length - 1 - i);
+  return list.slice(i - n, i + n + 1);
+}
+
 /** The mean of the moments about moment i, the nearer the more: it holds what all of them hold. */
 function blended(raw, i) {
-  const from = Math.max(0, i - 2 * SPREAD);
-  const near = raw.slice(from, i + 2 * SPREAD + 1);
-  return mixed(near, near.map((_, j) => Math.exp(-(((from + j - i) / SPREAD) ** 2))));
+  const near = about(raw, i, 2 * SPREAD);
+  const middle = (near.length - 1) / 2;
+  return mixed(near, near.map((_, j) => Math.exp(-(((j - middle) / SPREAD) ** 2))));
 }
 
 function mixed(boxes, weights) {
