@@ -47,6 +47,8 @@ _HOME = {
     "into_capsule": "scenarios",
     "save": "storage",
     "load": "storage",
+    "write_player": "viewer",
+    "player": "viewer",
     "lineup": "pipeline",
     "add": "pipeline",
 }

@@ -34,6 +34,7 @@ ORDER = [
     *("layered", "bounds", "subset_sums", "contraction"),
     *("motion", "folding", "trimming", "transformation", "scenarios"),
     *("storage", "verification", "pipeline", "_sources", "engines", "sweep", "tables", "draw"),
+    "viewer",
     *("_progress", "cli"),
 ]
 

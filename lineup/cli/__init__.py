@@ -12,7 +12,7 @@ from typing import NoReturn
 
 import typer
 
-from . import chains, experiments, films
+from . import chains, experiments, films, playing
 from .experiments import EXPERIMENTS
 
 __all__ = ["EXPERIMENTS", "app", "main", "run"]
@@ -34,6 +34,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "path": chains.path,
     "unfold": chains.unfold,
     "animate": films.animate,
+    "play": playing.play,
     "sweep": experiments.sweep,
 }
 for name, command in COMMANDS.items():

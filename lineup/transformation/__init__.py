@@ -50,9 +50,10 @@ def transform(
     Returns
     -------
     Motion
-        From ``a.start`` to its `goal`, the start of B. Where there is none, a motion without
-        moves whose `reason` says why. Only `certify` says that it is free of collisions; with
-        `within`, what is returned was judged so at its diameter and bend, and to fit.
+        From ``a.start`` to its `goal`, the start of B as it is given. Where there is none, a
+        motion without moves whose `reason` says why. Only `certify` says that it is free of
+        collisions; with `within`, what is returned was judged so at its diameter and bend, and
+        to fit.
 
     Raises
     ------
