@@ -33,6 +33,7 @@ ORDER = [
     *("visits", "reeb", "planar", "linking", "assumptions", "paper", "spatial", "refinement"),
     *("layered", "bounds", "subset_sums", "contraction"),
     *("motion", "folding", "trimming", "transformation", "scenarios"),
+    "stress",
     *("storage", "verification", "pipeline", "_sources", "engines", "sweep", "tables", "draw"),
     "viewer",
     *("_progress", "cli"),
