@@ -32,7 +32,8 @@ ORDER = [
     *("visits", "reeb", "planar", "linking", "assumptions", "paper", "spatial", "refinement"),
     *("layered", "bounds", "subset_sums", "contraction"),
     *("motion", "folding", "trimming", "transformation", "scenarios"),
-    *("storage", "verification", "pipeline", "_sources", "engines", "sweep", "tables", "draw"),
+    *("storage", "verification", "pipeline", "_sources", "engines", "sweep", "tables"),
+    *("block", "draw", "fabrication"),
     *("_progress", "cli"),
 ]
 
