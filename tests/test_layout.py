@@ -36,6 +36,8 @@ ORDER = [
     "stress",
     *("storage", "verification", "pipeline", "_sources", "engines", "sweep", "tables", "draw"),
     "viewer",
+    *("storage", "verification", "pipeline", "_sources", "engines", "sweep", "tables"),
+    *("block", "draw", "fabrication"),
     *("_progress", "cli"),
 ]
 

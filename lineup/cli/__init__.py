@@ -12,7 +12,7 @@ from typing import NoReturn
 
 import typer
 
-from . import chains, experiments, films, playing
+from . import chains, experiments, films, playing, printing
 from .experiments import EXPERIMENTS
 
 __all__ = ["EXPERIMENTS", "app", "main", "run"]
@@ -35,6 +35,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "unfold": chains.unfold,
     "animate": films.animate,
     "play": playing.play,
+    "print": printing.print_chain,
     "sweep": experiments.sweep,
 }
 for name, command in COMMANDS.items():
