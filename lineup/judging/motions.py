@@ -260,7 +260,7 @@ class _Trial:
 
     def _turns(self) -> Certificate | None:
         """Peels, swings and doors up to the next move of another kind."""
-        moves, first = self.motion.moves.astype(np.int64), self.checked
+        moves, first = self.motion.moves.astype(np.int64, order="C"), self.checked
         limits = _turns.Limits(self.diameter, self.max_bend_deg, self.within - 1 + _ROUNDING)
         found = _turns.carry_out(self.pose, moves, first, limits, self.box)
         where = found.where
