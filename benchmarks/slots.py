@@ -47,8 +47,8 @@ def measured(solid: lu.VoxelSolid) -> list[dict[str, Any]]:
     slotted, growing_on = timed(lambda: lu.fold(solid, joints="slotted"))
     return [
         row_of(solid, "growth", free, growing),
-        row_of(solid, "its path, sparing", anew, planning),
-        row_of(solid, "growth, slotted", slotted, growing_on),
+        row_of(solid, "its path planned anew", anew, planning),
+        row_of(solid, "slotted growth", slotted, growing_on),
     ]
 
 

@@ -156,9 +156,11 @@ def test_slots_on_a_tiny_solid(tmp_path):
     table = pd.read_csv(tmp_path / "slots.csv").set_index("plan")
     assert table["certified"].all()
     assert (table["certified_slotted"] == (table["against"] == 0)).all()
-    free, anew, slotted = (table.loc[p] for p in ("growth", "its path, sparing", "growth, slotted"))
+    free, anew, slotted = (
+        table.loc[p] for p in ("growth", "its path planned anew", "slotted growth")
+    )
     assert free["against"] > 0
     assert slotted["against"] == 0
     assert anew["path"] == free["path"]
     assert anew["share"] == anew["against"] / anew["moves"]
-    assert "| growth, slotted" in (tmp_path / "slots.md").read_text()
+    assert "| slotted growth" in (tmp_path / "slots.md").read_text()
