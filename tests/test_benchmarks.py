@@ -18,6 +18,7 @@ import folding
 import motion
 import paths
 import peers
+import slots
 
 
 def run(*arguments, app=paths.app):
@@ -148,3 +149,18 @@ def test_peers_find_paths_and_cp_sat_the_longest():
 @pytest.mark.parametrize("voxels", [8, 40, 1000, 30_000])
 def test_balls_have_about_the_size_asked_for(voxels):
     assert 0.7 * voxels <= paths.solid_of("ball", voxels).size <= voxels
+
+
+def test_slots_on_a_tiny_solid(tmp_path):
+    run("--solid", "ball", "--voxels", 60, "--out", tmp_path, app=slots.app)
+    table = pd.read_csv(tmp_path / "slots.csv").set_index("plan")
+    assert table["certified"].all()
+    assert (table["certified_slotted"] == (table["against"] == 0)).all()
+    free, anew, slotted = (
+        table.loc[p] for p in ("growth", "its path planned anew", "slotted growth")
+    )
+    assert free["against"] > 0
+    assert slotted["against"] == 0
+    assert anew["path"] == free["path"]
+    assert anew["share"] == anew["against"] / anew["moves"]
+    assert "| slotted growth" in (tmp_path / "slots.md").read_text()
