@@ -45,6 +45,8 @@ _HOME = {
     "transform": "transformation",
     "through_tube": "scenarios",
     "into_capsule": "scenarios",
+    "write_manual": "manual",
+    "read_manual": "manual",
     "save": "storage",
     "load": "storage",
     "lineup": "pipeline",

@@ -34,7 +34,7 @@ ORDER = [
     *("layered", "bounds", "subset_sums", "contraction"),
     *("motion", "folding", "trimming", "transformation", "scenarios"),
     *("storage", "verification", "pipeline", "_sources", "engines", "sweep", "tables", "draw"),
-    *("_progress", "cli"),
+    *("manual", "_progress", "cli"),
 ]
 
 MODULES = sorted((ROOT / "lineup").rglob("*.py"))

@@ -101,6 +101,16 @@ def states_of(motion: Motion) -> IntArray:
 
 def _plan_behind(motion: Motion) -> IntArray:
     """The states (K, 4) of `states_of`; none if they would not be a peel plan of this motion."""
+    states = rod_states(motion)
+    grid, cells = path_grid(motion.start)
+    return states if len(states) and keeps_rules(grid, link(grid, cells), states) else states[:0]
+
+
+def rod_states(motion: Motion) -> IntArray:
+    """States (K, 4) of a motion to the line in which nothing but two straight end rods moves.
+
+    None, (0, 4), if the motion is not of this kind. That rods have room is not asked here.
+    """
     none = np.empty((0, 4), np.int32)
     if not (motion.straight and np.isin(motion.moves[:, 0], (Move.PEEL, Move.SWING)).all()):
         return none
@@ -125,9 +135,8 @@ def _plan_behind(motion: Motion) -> IntArray:
         return none
     let_go(1, state[0] + 1)
     plan = _without_last_swings(np.array(states, np.int32))
-    grid, cells = path_grid(motion.start)
     same = np.array_equal(motion_of(motion.start, plan).moves, motion.moves)
-    return plan if same and keeps_rules(grid, link(grid, cells), plan) else none
+    return plan if same else none
 
 
 def _first_rod(motion: Motion, end: int) -> int:
