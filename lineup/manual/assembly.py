@@ -72,6 +72,11 @@ class Assembly:
         ]
         return np.array(undoes, np.int32)
 
+    @cached_property
+    def twisting(self) -> frozenset[Action]:
+        """The actions themselves."""
+        return frozenset(self.actions[number - 1] for number in self.twists.tolist())
+
 
 def assembly_of(folding: Folding) -> Assembly:
     """What `write_manual` writes of a folding.

@@ -89,6 +89,7 @@ def _row(
     late = first if at[0] > at[1] else second
     done = [assembly.actions[n - 1] for n in sorted(at) if n]
     (x1, y1, z1), (x2, y2, z2) = assembly.folding.path.voxels[[first, second]].tolist()
+    swung = [text for n in sorted(at) for text in swings.get(n, [])]
     column, row, layer = assembly.places[late].tolist()
     last = second + 1 == len(letters)
     return BlockRow(
@@ -109,10 +110,10 @@ def _row(
         joint2=letters[second].strip("."),
         at1=at[0],
         at2=at[1],
-        swings=" ".join(s for n in sorted(at) for s in swings.get(n, [])),
+        swings=" ".join(swung),
         bends="".join(bend(assembly, action) for action in done),
         loose="".join(assembly.build.letters[action.loose] for action in done),
-        twists=int(np.isin(at, assembly.twists).sum()),
+        twists=int(np.isin([*at, *(int(s.split(":")[0]) for s in swung)], assembly.twists).sum()),
         column=column,
         row=row,
         layer=layer,

@@ -128,7 +128,7 @@ def _instructions(
         texts.append(
             f"{hidden} voxels go below others (hatched): lift the body, or lay them from the side."
         )
-    if len(np.intersect1d(assembly.number[_laid(actions)], assembly.twists)):
+    if not assembly.twisting.isdisjoint(actions):
         texts.append(
             "*  Straighten this hinge out of its piece first, then press it into the slot on "
             "the side of its letter."
@@ -144,6 +144,7 @@ def _swings(assembly: Assembly, part: Stretch) -> list[str]:
     letters = assembly.build.letters
     return [
         f"{ENDS[swing.end]} from {letters[swing.was]} to {letters[swing.loose]}"
+        + ("*" if swing in assembly.twisting else "")
         for swing in part.swings
     ]
 

@@ -61,7 +61,7 @@ def lines(assembly: Assembly, stretch: Stretch) -> Iterator[tuple[int, int, list
     for action in stretch.laid:
         block = action.joint // 2
         word = words.setdefault(block, ["-", "-"])
-        twist = "*" if assembly.number[action.joint] in assembly.twists else ""
+        twist = "*" if action in assembly.twisting else ""
         word[action.lays_hinge] = bend(assembly, action) + twist
     rows: dict[int, list[int]] = {}
     for block in words:
