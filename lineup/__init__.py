@@ -53,6 +53,8 @@ _HOME = {
     "BLOCKS": "block",
     "check_block": "block",
     "export_print": "fabrication",
+    "write_manual": "manual",
+    "read_manual": "manual",
     "save": "storage",
     "load": "storage",
     "write_player": "viewer",

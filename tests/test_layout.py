@@ -39,6 +39,7 @@ ORDER = [
     *("storage", "verification", "pipeline", "_sources", "engines", "sweep", "tables"),
     *("block", "draw", "fabrication"),
     *("_progress", "cli"),
+    *("manual", "_progress", "cli"),
 ]
 
 MODULES = sorted((ROOT / "lineup").rglob("*.py"))

@@ -12,7 +12,7 @@ from typing import NoReturn
 
 import typer
 
-from . import chains, experiments, films, playing, printing
+from . import chains, experiments, films, manual, playing, printing
 from .experiments import EXPERIMENTS
 
 __all__ = ["EXPERIMENTS", "app", "main", "run"]
@@ -36,6 +36,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "animate": films.animate,
     "play": playing.play,
     "print": printing.print_chain,
+    "manual": manual.manual,
     "sweep": experiments.sweep,
 }
 for name, command in COMMANDS.items():
