@@ -33,13 +33,9 @@ ORDER = [
     *("visits", "reeb", "planar", "linking", "assumptions", "paper", "spatial", "refinement"),
     *("layered", "bounds", "subset_sums", "contraction"),
     *("motion", "folding", "trimming", "transformation", "scenarios"),
-    "stress",
-    *("storage", "verification", "pipeline", "_sources", "engines", "sweep", "tables", "draw"),
-    "viewer",
-    *("storage", "verification", "pipeline", "_sources", "engines", "sweep", "tables"),
-    *("block", "draw", "fabrication"),
+    *("stress", "storage", "verification", "pipeline", "_sources", "engines", "sweep", "tables"),
+    *("block", "draw", "viewer", "fabrication", "manual"),
     *("_progress", "cli"),
-    *("manual", "_progress", "cli"),
 ]
 
 MODULES = sorted((ROOT / "lineup").rglob("*.py"))
