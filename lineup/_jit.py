@@ -34,13 +34,14 @@ def part(function: F) -> F:
 
 
 def _compiled(function: F, **options: bool) -> Any:
-    dispatcher = numba.njit(cache=True, no_cfunc_wrapper=True, **options)(function)
+    compiler: Any = numba.njit
+    kind_of: Any = types.unliteral
+    dispatcher = compiler(cache=True, no_cfunc_wrapper=True, **options)(function)
     typed = dispatcher.get_call_template
 
     def typed_by_kind(args: Any, kws: Any) -> Any:
         # To numba each constant is a type, and it would compile a callee for one after the other.
-        kinds = {name: types.unliteral(kind) for name, kind in kws.items()}
-        return typed(tuple(types.unliteral(kind) for kind in args), kinds)
+        return typed(tuple(map(kind_of, args)), {name: kind_of(kws[name]) for name in kws})
 
     dispatcher.get_call_template = typed_by_kind
     return dispatcher
