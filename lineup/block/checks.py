@@ -17,16 +17,19 @@ from scipy import ndimage
 
 from ..grid import FloatArray
 from .parameters import Block
-from .parts import part_of, solids
+from .parts import join_clearance_mm, part_of, solids
 
-STATES = {"straight": (0, 0), "y+": (0, 1), "y-": (0, -1), "z+": (1, 0), "z-": (-1, 0)}
-"""The five states of a joint on the lattice: a bend of a quarter turn, (y, z) in quarters."""
+STATES = ((0, 0), (0, 1), (0, -1), (1, 0), (-1, 0))
+"""The five states of a joint on the lattice: quarter turns about -y and z, of which one is 0."""
 
 _STEPS = 8
 """Positions of a bar on its way along a slot that are looked at where nothing is to snap."""
 _TWISTS_DEG = (22.5, 45.0, 67.5)
+_HALVES = (("pin", "sleeve", None), ("tongue", "groove", 1))
+"""What holds what, and along which axis it slides in."""
 _VOLUME = 1e-6  # mm^3 that count as none
-_TRIES = 10  # positions of a ball's centre along each half axis
+_TRIES = (8, 16)
+"""Positions of a ball's centre along each half axis; the second where the first is too coarse."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +42,8 @@ class BlockReport:
     reason : str
         "printable", or the first thing that is wrong.
     poses : int
-        Poses of two capsules and the hinge between them that were looked at.
+        Poses of two capsules and the hinge between them that were looked at: 0, and the numbers
+        below nan, where a part on its own is wrong.
     overlap_mm3 : float
         Largest volume that two parts share in any of them.
     gap_mm : float
@@ -95,6 +99,9 @@ def check_parts(parts: Mapping[str, Any], block: Block) -> BlockReport:
     if missing:
         raise ValueError(f"a block needs a part {missing[0]!r}, got {sorted(parts)}")
     wrong = [f"{name}: {fault}" for name in sorted(parts) for fault in _faults(name, parts, block)]
+    if wrong:  # what is not a body can be in no pose
+        nan = float("nan")
+        return BlockReport(False, wrong[0], 0, nan, nan, nan, nan)
     poses = list(_poses(parts, block))
     overlap = max(_overlap(bodies) for bodies in poses)
     gap = min(_gap(bodies, 2 * block.clearance_mm) for bodies in poses)
@@ -147,7 +154,7 @@ def _poses(parts: Mapping[str, Any], block: Block) -> Iterator[list[Any]]:
     with it.
     """
     a = block.pitch_mm
-    for first, second in product(STATES.values(), repeat=2):
+    for first, second in product(STATES, repeat=2):
         after = [_bent(body, second, 90).translate([a, 0, 0]) for body in _middle(parts)]
         moved = [_bent(body, first, 90).translate([a, 0, 0]) for body in [parts["hinge"], *after]]
         yield _middle(parts) + moved
@@ -161,7 +168,7 @@ def _ways(parts: Mapping[str, Any], block: Block) -> Iterator[list[Any]]:
     """A socket and a hinge on its way along a slot, from straight to bent all the way."""
     socket = _middle(parts)[-1].translate([-block.pitch_mm, 0, 0])
     for deg in np.linspace(0, block.bend_deg, _STEPS + 1).tolist():
-        for state in list(STATES.values())[1:]:
+        for state in STATES[1:]:
             yield [socket, _bent(parts["hinge"], state, deg)]
 
 
@@ -171,13 +178,15 @@ def _loose(parts: Mapping[str, Any], block: Block) -> Iterator[tuple[str, str]]:
     A pin is held if wherever it is shifted to, by more than its play, it meets the sleeve; a groove
     if that is so but along y, the way it slides in.
     """
-    shift = 2 * block.clearance_mm + 0.1
     directions = np.array(list(product((-1, 0, 1), repeat=3)))
-    for inner, outer, free in (("pin", "sleeve", None), ("tongue", "groove", 1)):
+    plays = (block.clearance_mm, join_clearance_mm(block))
+    for (inner, outer, free), play in zip(_HALVES, plays, strict=True):
         if inner not in parts or outer not in parts:
             continue
         ways = [d for d in directions if (d if free is None else np.delete(d, free)).any()]
-        moved = [shift * way / np.linalg.norm(way) for way in ways]
+        shift = 2 * play + 0.1  # a flank at 30 degrees is met after twice its clearance
+        across = [way if free is None else np.delete(way, free) for way in ways]
+        moved = [shift * w / np.linalg.norm(a) for w, a in zip(ways, across, strict=True)]
         holds = all(_overlap([parts[inner].translate(m), parts[outer]]) > _VOLUME for m in moved)
         if not holds or _overlap([parts[inner], parts[outer]]) > _VOLUME:
             yield inner, outer
@@ -219,19 +228,29 @@ def play_mm(socket: Any, radius_mm: float) -> float:
     one on the grid, and what is reached is not underestimated. The hinge's bar would only be in
     the way, so its direction does not matter.
     """
+    plays = (_play_on_grid(socket, radius_mm, tries) for tries in _TRIES)
+    return next((play for play in plays if np.isfinite(play)), float("inf"))
+
+
+def _play_on_grid(socket: Any, radius_mm: float, tries: int) -> float:
     half = radius_mm / 2
-    ticks = np.linspace(-half, half, 2 * _TRIES + 1)
-    grid = np.stack(np.meshgrid(ticks, ticks, ticks, indexing="ij"), axis=-1)
-    slack = np.sqrt(3) / 2 * half / _TRIES
-    distances = _distances(socket, grid.reshape(-1, 3)).reshape(grid.shape[:3])
-    label, _ = ndimage.label(distances >= radius_mm - slack, np.ones((3, 3, 3), bool))
-    home = label[_TRIES, _TRIES, _TRIES]
-    if not home:
-        return 0.0
-    reached = grid[label == home]
-    if np.abs(reached).max() > half - 1e-9:
-        return float("inf")
-    return float(np.linalg.norm(reached, axis=1).max() + slack)
+    ticks = np.linspace(-half, half, 2 * tries + 1)
+    slack = np.sqrt(3) / 2 * half / tries
+    seen = np.zeros((2 * tries + 1,) * 3, bool)
+    fresh = seen.copy()
+    fresh[tries, tries, tries] = True
+    play = 0.0
+    while fresh.any():
+        seen |= fresh
+        cells = np.argwhere(fresh)
+        free = cells[_distances(socket, ticks[cells]) >= radius_mm - slack]
+        if len(free) and (free.min() == 0 or free.max() == 2 * tries):
+            return float("inf")
+        play = max(play, np.linalg.norm(ticks[free], axis=1).max(initial=-slack) + slack)
+        fresh[:] = False
+        fresh[tuple(free.T)] = True
+        fresh = ndimage.binary_dilation(fresh, np.ones((3, 3, 3), bool)) & ~seen
+    return float(play)
 
 
 def _distances(solid: Any, points: FloatArray) -> FloatArray:

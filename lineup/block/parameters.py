@@ -13,8 +13,8 @@ from dataclasses import dataclass, fields, replace
 WALL_MM = 0.8
 """Least thickness of a wall, a lip or a rod that is printed."""
 
-RETAINED_MM = 0.1
-"""By how much, in radius, a ball must be too large for the widest place where slots cross."""
+RETAINED, RETAINED_MM = 0.03, 0.1
+"""By how much a ball must be too large for where slots cross: of its diameter, and beyond that."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ class Block:
 
     @property
     def neck_mm(self) -> float:
-        """Width of a slot at its narrowest, half way."""
+        """Width of a slot at its narrowest, at a bend of 45 degrees."""
         return self.bar_mm - 2 * self.snap_mm
 
 
@@ -116,11 +116,12 @@ def _ranges(b: Block) -> Iterator[tuple[str, float, float, str]]:
         b.pitch_mm / 4,
         "capsules need clearance, and more of it the further they bend",
     )
-    thickest = (2 * (b.radius_mm - WALL_MM - b.clearance_mm) - 2 * RETAINED_MM) / math.sqrt(2)
+    largest = 2 * (b.radius_mm - WALL_MM - b.clearance_mm)
+    widest = ((1 - RETAINED) * largest - RETAINED_MM) / math.sqrt(2)
     yield (
         "bar_mm",
         WALL_MM,
-        thickest - 2 * b.clearance_mm,
+        widest - 2 * b.clearance_mm,
         "a thicker bar leaves no ball that slots retain, a larger pitch_mm does",
     )
     yield (
@@ -131,8 +132,8 @@ def _ranges(b: Block) -> Iterator[tuple[str, float, float, str]]:
     )
     yield (
         "ball_mm",
-        math.sqrt(2) * b.hole_mm + 2 * RETAINED_MM,
-        2 * (b.radius_mm - WALL_MM - b.clearance_mm),
+        _least_ball_mm(b.hole_mm),
+        largest,
         "a smaller ball slips out where slots cross, a larger one breaks through its shell",
     )
     if b.swivel:
@@ -143,6 +144,11 @@ def _ranges(b: Block) -> Iterator[tuple[str, float, float, str]]:
             200.0,
             "a swivel needs more room between two sockets; make pitch_mm larger or ball_mm smaller",
         )
+
+
+def _least_ball_mm(hole_mm: float) -> float:
+    """The smallest ball that is held where two slots cross, whose corners are a diagonal apart."""
+    return (math.sqrt(2) * hole_mm + RETAINED_MM) / (1 - RETAINED)
 
 
 def socket_depth_mm(block: Block, radius_mm: float) -> float:
@@ -188,7 +194,7 @@ def scaled(block: Block, pitch_mm: float) -> Block:
     """The block at another pitch.
 
     All lengths grow with the pitch but the clearance, which is the printer's, and a negative snap,
-    which is clearance. The gap is no less than the clearance, and a ball no smaller than slots hold.
+    which is clearance. The gap is no less than the clearance, a ball no smaller than slots hold.
 
     Raises
     ------
@@ -209,7 +215,7 @@ def scaled(block: Block, pitch_mm: float) -> Block:
         if f.name in ("gap_mm", "ball_mm", "bar_mm")
     }
     grown["gap_mm"] = max(grown["gap_mm"], block.clearance_mm)
-    held = math.sqrt(2) * (grown["bar_mm"] + 2 * block.clearance_mm) + 2 * RETAINED_MM
+    held = _least_ball_mm(grown["bar_mm"] + 2 * block.clearance_mm)
     grown["ball_mm"] = max(grown["ball_mm"], math.ceil(1000 * held) / 1000)
     snap = block.snap_mm * share if block.snap_mm > 0 else block.snap_mm
     return replace(block, pitch_mm=pitch_mm, snap_mm=round(snap, 9), **grown)

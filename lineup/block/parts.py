@@ -25,6 +25,8 @@ from .parameters import WALL_MM, Block, socket_depth_mm, swivel
 
 _AROUND = 1.3  # how far cutters reach beyond the surface, relative to it
 _SLOT_STEPS = 8
+NECK = np.pi / 4
+"""Where slots are narrowest, from the pole: half way between two lattice states of a joint."""
 _JOIN_HALF_WIDTH = 0.25  # of the tongue's top, relative to the capsule's diameter
 _JOIN_SLOPE = np.tan(np.deg2rad(30))
 _FACE_MM = 0.1  # between the faces of tongue and groove
@@ -142,9 +144,11 @@ def _socket(block: Block) -> Any:
     reach = _AROUND * block.radius_mm / np.sin(np.deg2rad(block.bend_deg))
     hole = Manifold.cylinder(reach, around * block.hole_mm / 2, circular_segments=block.segments)
     cavity = _about_ball(block.cavity_mm / 2, block.segments)
-    slot = _slot(block, reach) + hole.rotate([0, 90, 0]).rotate([0, 0, block.bend_deg])
+    hole = hole.rotate([0, 90, 0])
+    ends = [hole.rotate([0, 0, deg]) for deg in sorted({90.0, block.bend_deg})]
+    slot = reduce(add, ends, _slot(block, reach))
     slots = [slot.rotate([90 * k, 0, 0]) for k in range(4)]
-    return reduce(add, slots, cavity + hole.rotate([0, 90, 0]))
+    return reduce(add, slots, cavity + hole)
 
 
 def _about_ball(radius: float, segments: int) -> Any:
@@ -159,24 +163,28 @@ def _about_ball(radius: float, segments: int) -> Any:
 def slot_half_width_mm(block: Block, polar: NDArray[Any]) -> FloatArray:
     """Half the width of a slot at angles from the pole, in radians (Figure 16).
 
-    Each side is an arc of a circle on the outer sphere: it meets the holes at both ends of the slot
-    and comes nearest to the other side half way, at the neck.
+    Each side is an arc of a circle on the outer sphere: it meets the holes in which a bar rests, at
+    the pole and at a right angle to it, and comes nearest to the other side half way between, at
+    the neck. Beyond a right angle a slot is as wide as at its ends.
     """
     end, neck = block.hole_mm / 2, block.neck_mm / 2
     sag = end - neck
-    middle = np.deg2rad(block.bend_deg) / 2
-    along = (np.asarray(polar) - middle) * block.radius_mm
+    along = (np.asarray(polar, float) - NECK) * block.radius_mm
     if sag < 1e-9:
         return np.full(along.shape, end)
-    chord = middle * block.radius_mm
+    chord = NECK * block.radius_mm
     radius = (chord**2 + sag**2) / (2 * sag)
+    along = np.minimum(along, chord)
     half: FloatArray = neck + radius - np.sqrt(radius**2 - along**2)
     return half
 
 
 def _slot(block: Block, reach: float) -> Any:
     """A slot from the pole, +x, towards +y, as far as bends go."""
-    polar = np.linspace(0, np.deg2rad(block.bend_deg), _SLOT_STEPS + 1)
+    polar = np.linspace(0, 2 * NECK, _SLOT_STEPS + 1)
+    bend = np.deg2rad(block.bend_deg)
+    if bend > 2 * NECK:
+        polar = np.append(polar, np.linspace(2 * NECK, bend, _SLOT_STEPS // 2)[1:])
     half = slot_half_width_mm(block, polar)
     inner = block.ball_mm / 4
     corners = [(inner, -1), (reach, -1), (reach, 1), (inner, 1)]
@@ -186,11 +194,11 @@ def _slot(block: Block, reach: float) -> Any:
         for r, side in corners
     ]
     faces = [(0, 2, 1), (0, 3, 2)]
-    for a in range(0, 4 * _SLOT_STEPS, 4):
+    last = 4 * (len(polar) - 1)
+    for a in range(0, last, 4):
         for k in range(4):
             near, far = (a + k, a + (k + 1) % 4), (a + 4 + k, a + 4 + (k + 1) % 4)
             faces += [(near[0], far[1], far[0]), (near[0], near[1], far[1])]
-    last = 4 * _SLOT_STEPS
     faces += [(last, last + 1, last + 2), (last, last + 2, last + 3)]
     mesh = Mesh(np.array(vertices, np.float32), np.array(faces, np.uint32)[:, ::-1].copy())
     return Manifold(mesh)
@@ -199,7 +207,12 @@ def _slot(block: Block, reach: float) -> Any:
 def join_height_mm(block: Block) -> float:
     """Height of the tongue that joins two halves of a middle, as far as there is room for one."""
     room = block.pitch_mm / 2 - socket_depth_mm(block, block.radius_mm / 2)
-    return min(room - WALL_MM - block.clearance_mm / 2, 0.15 * block.pitch_mm)
+    return min(room - WALL_MM - join_clearance_mm(block), 0.15 * block.pitch_mm)
+
+
+def join_clearance_mm(block: Block) -> float:
+    """Between tongue and groove, which slide once and are then glued."""
+    return min(block.clearance_mm / 2, 0.15)
 
 
 def _joined_halves(block: Block, body: Any) -> tuple[Any, Any]:
@@ -208,7 +221,7 @@ def _joined_halves(block: Block, body: Any) -> tuple[Any, Any]:
     dovetail = _dovetail(block, 0.0) ^ body
     before = body.trim_by_plane([-1, 0, 0], -(face - _FACE_MM / 2))
     after = body.trim_by_plane([1, 0, 0], face + _FACE_MM / 2)
-    return before + dovetail, after - _dovetail(block, block.clearance_mm / 2)
+    return before + dovetail, after - _dovetail(block, join_clearance_mm(block))
 
 
 def _dovetail(block: Block, clearance: float) -> Any:

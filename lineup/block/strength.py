@@ -14,7 +14,7 @@ import pandas as pd
 
 from ..grid import FloatArray
 from .parameters import Block
-from .parts import slot_half_width_mm
+from .parts import NECK, slot_half_width_mm
 
 PAPER_BUCKLING_N = 2042.0
 PAPER_TENSION_KPA = 206.7
@@ -229,8 +229,8 @@ def _side(block: Block, modulus_mpa: float) -> tuple[float, float]:
     """Deflection, and largest strain, that 1 N at the neck causes in the side of a slot."""
     bend = math.radians(block.bend_deg)
     radius = _shell_radius(block)
-    length = radius * bend / 2
-    middle = 3 / 4 * bend  # between the slot's end and its neck
+    length = radius * (bend - NECK)
+    middle = (bend + NECK) / 2
     wide = radius * math.sin(middle) * math.pi / 2
     depth = wide - 2 * float(slot_half_width_mm(block, np.array([middle]))[0])
     width = block.radius_mm - block.cavity_mm / 2
@@ -243,7 +243,7 @@ def _side(block: Block, modulus_mpa: float) -> tuple[float, float]:
 
 def _steepest(block: Block) -> float:
     """The steepest slope of a slot's side on the way to its neck."""
-    polar = np.linspace(0, math.radians(block.bend_deg) / 2, 65)
+    polar = np.linspace(0, NECK, 65)
     half = slot_half_width_mm(block, polar)
     return float(-(np.diff(half) / (np.diff(polar) * block.radius_mm)).min())
 

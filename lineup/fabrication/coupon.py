@@ -81,8 +81,9 @@ def _variants(block: Block) -> Iterator[tuple[int, tuple[Block, ...]]]:
         clearance = round(share * block.clearance_mm, 3)
         snaps = [round(s * block.snap_mm, 3) for s in SNAPS] if block.snap_mm > 0 else [-clearance]
         try:
-            fit = {"clearance_mm": clearance, "gap_mm": max(clearance, block.gap_mm)}
-            ends = tuple(replace(block, snap_mm=snap, **fit) for snap in snaps)
+            gap = max(clearance, block.gap_mm)
+            fit = replace(block, clearance_mm=clearance, gap_mm=gap, snap_mm=min(snaps))
+            ends = tuple(replace(fit, snap_mm=snap) for snap in snaps)
         except ValueError:  # out of the ranges of this block
             continue
         yield pips, ends

@@ -266,8 +266,8 @@ def _coloured(
         places.append((f"{piece.part}-{segment + 1}", piece))
     objects = {}
     for key, piece in sorted(places, key=lambda place: place[0]):
-        _, _, segment = key.partition("-")
-        colour = palette[int(segment) - 1] if segment else _STEEL
+        _, _, number = key.partition("-")
+        colour = palette[int(number) - 1] if number else _STEEL
         objects[key] = Painted(parts[piece.part], key, colour)
     return objects, places
 
