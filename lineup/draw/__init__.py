@@ -12,6 +12,7 @@ from .plans import layers, reeb
 from .regions import checkerboard, contraction, merge, planar_steps
 from .scenarios import run
 from .scenes import chain, contact_sheet, layering, solid
+from .strength import standing, strength
 
 __all__ = [
     "animation",
@@ -30,6 +31,8 @@ __all__ = [
     "run",
     "save",
     "solid",
+    "standing",
+    "strength",
     "two_stages",
     "unfolding",
 ]
