@@ -12,7 +12,7 @@ from typing import NoReturn
 
 import typer
 
-from . import chains, experiments, films, manual, playing, printing
+from . import chains, experiments, films, manual, playing, printing, strength
 from .experiments import EXPERIMENTS
 
 __all__ = ["EXPERIMENTS", "app", "main", "run"]
@@ -37,6 +37,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "play": playing.play,
     "print": printing.print_chain,
     "manual": manual.manual,
+    "strength": strength.strength,
     "sweep": experiments.sweep,
 }
 for name, command in COMMANDS.items():

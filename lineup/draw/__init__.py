@@ -13,6 +13,7 @@ from .printed import block, slots
 from .regions import checkerboard, contraction, merge, planar_steps
 from .scenarios import run
 from .scenes import chain, contact_sheet, layering, solid
+from .strength import standing, strength
 
 __all__ = [
     "animation",
@@ -33,6 +34,8 @@ __all__ = [
     "save",
     "slots",
     "solid",
+    "standing",
+    "strength",
     "two_stages",
     "unfolding",
 ]

@@ -87,6 +87,15 @@ def bonding_of(bonding: Bonding | str) -> Bonding:
     return BONDINGS[bonding]
 
 
+def name_of(bonding: Bonding | str) -> str:
+    """Its name, or its shares where it has none."""
+    if isinstance(bonding, str):
+        return bonding
+    named = [name for name, known in BONDINGS.items() if known == bonding]
+    shares = f"{bonding.printed:g}/{bonding.hinge:g}/{bonding.velcro:g}"
+    return named[0] if named else shares + ("" if bonding.pulls else " pushing")
+
+
 @record
 class Faces:
     """The faces that bear load, square to an axis and of area 1, in voxel units.
@@ -154,8 +163,8 @@ def inner_faces(voxels: IntArray, bonding: Bonding, odd: bool = False) -> Faces:
     kind = np.where(along, np.where(hinge, HINGE, PRINTED), VELCRO if bonding.pulls else TOUCH)
     share = np.array([bonding.printed, bonding.hinge, bonding.velcro, bonding.velcro])[kind]
     kept = share > 0
-    columns = (kind[kept], first[kept], second[kept], direction[kept])
-    return Faces(*(column.astype(np.int32) for column in columns), share[kept])
+    kind = kind.astype(np.int32)
+    return Faces(kind[kept], first[kept], second[kept], direction[kept], share[kept])
 
 
 def outer_faces(voxels: IntArray, side: str) -> Faces:

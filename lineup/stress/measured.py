@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from scipy import sparse
 
-from ..grid import FloatArray, IntArray
+from ..grid import BoolArray, FloatArray, IntArray
 from ..solid import Folding, VoxelPath, VoxelSolid
 from .contacts import Points, all_points, no_points, table_points, touch_points
 from .faces import (
@@ -210,7 +210,7 @@ def _block(values: FloatArray, at: int, size: int) -> Matrix:
 
 def _check_inside(path: VoxelPath, solid: VoxelSolid) -> None:
     cells = path.voxels // path.refinement
-    inside = ((cells >= 0) & (cells < solid.occupancy.shape)).all(axis=1)
+    inside: BoolArray = np.all((cells >= 0) & (cells < solid.occupancy.shape), axis=1)
     inside[inside] = solid.occupancy[tuple(cells[inside].T)]
     if not inside.all():
         step = int(inside.argmin())

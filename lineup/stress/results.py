@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from .._record import record
 from ..grid import FloatArray, IntArray
-from .faces import Bonding, bonding_of, direction_of
+from .faces import Bonding, bonding_of, direction_of, name_of
 from .support import upward
 
 DENSITY = 1130.0
@@ -32,7 +33,7 @@ RESIN_PA = 38e6
 """The least compressive strength of the paper's resin; taken for its tensile strength, too."""
 
 UNBALANCED = 1e-6
-"""The force or moment left over on a voxel, in weights of the body, that is still a balance."""
+"""The largest `Strength.residual` that is still a balance."""
 
 STANDS = "stands"
 
@@ -123,7 +124,8 @@ class Strength:
     sag_mm : float
         The largest shift of a voxel.
     residual : float
-        The largest force or moment on a voxel that is not balanced, in weights of the body.
+        The largest force or moment on a voxel that is not balanced, as a share of the weight of
+        the body, or of the largest force or moment on a face if that is more.
     """
 
     name: str
@@ -148,8 +150,90 @@ class Strength:
 
     @property
     def worst_face(self) -> str:
-        """The face that gives way first, as "hinge 12-13"; "" if the body tips over."""
+        """The face that gives way first, as "hinge 12–13"; "" if the body tips over."""
         if self.worst < 0:
             return ""
-        kind, first, second = self.table.loc[self.worst, ["kind", "first", "second"]]
-        return f"{kind} {first}-{second}" if second >= 0 else f"{kind} under {first}"
+        row = self.table.iloc[self.worst]
+        kind, first, second = row["kind"], int(row["first"]), int(row["second"])
+        return f"{kind} {first}–{second}" if second >= 0 else f"{kind} under {first}"
+
+
+def summary(result: Strength) -> dict[str, Any]:
+    """What a result comes to, as one row of a table.
+
+    Returns
+    -------
+    dict
+        "model", "voxels", "pitch_mm", "up", "bonding", "support", "mass_kg", "on_table" (voxels
+        that bear on the support), "stands", "margin_mm", "safety", "worst"; and the largest
+        "tension_pa" and "corner_tension_pa" (mean over a face, and at a corner of one),
+        "compression_pa" (mean), "compression_n", "sag_mm" and "residual"; "reason".
+
+    Examples
+    --------
+    >>> import numpy as np, lineup as lu
+    >>> tower = lu.VoxelPath(np.array([(0, 0, z) for z in range(4)]))
+    >>> row = summary(lu.strength(tower))
+    >>> row["on_table"], round(row["compression_pa"])
+    (1, 443)
+    """
+    setting, table = result.setting, result.table
+    at_support = table["kind"].isin(["table", "held"]) & (table["normal_n"] != 0)
+    up = setting.up if isinstance(setting.up, str) else " ".join(f"{u:g}" for u in setting.up)
+    return {
+        "model": result.name,
+        "voxels": len(result.voxels),
+        "pitch_mm": setting.pitch_mm,
+        "up": up,
+        "bonding": name_of(setting.bonding),
+        "support": "table" if setting.held is None else f"held at {setting.held}",
+        "mass_kg": result.mass_kg,
+        "on_table": int(at_support.sum()),
+        "stands": result.stands,
+        "margin_mm": result.margin_mm,
+        "safety": result.safety,
+        "worst": result.worst_face,
+        "tension_pa": max(float(table["traction_pa"].max()), 0.0),
+        "corner_tension_pa": float(table["tension_pa"].max()),
+        "compression_pa": max(-float(table["traction_pa"].min()), 0.0),
+        "compression_n": max(-float(table["normal_n"].min()), 0.0),
+        "sag_mm": result.sag_mm,
+        "residual": result.residual,
+        "reason": result.reason,
+    }
+
+
+def shortfall(result: Strength) -> str:
+    """Why a model does not bear its own weight; "" if it does.
+
+    Examples
+    --------
+    >>> import numpy as np, lineup as lu
+    >>> hook = lu.VoxelPath(np.array([(0, 0, 0), (0, 0, 1), (1, 0, 1), (2, 0, 1)]))
+    >>> shortfall(lu.strength(hook))
+    'tips over: its centre of mass is 2.5 mm outside of what it rests on'
+    """
+    if not result.stands or result.reason not in (STANDS, f"held at {result.setting.held}"):
+        return result.reason
+    if result.safety < 1:
+        return f"{result.worst_face} gives way, at a safety factor of {result.safety:.3g}"
+    return ""
+
+
+def rounded(table: pd.DataFrame) -> pd.DataFrame:
+    """The table with floats to a millionth of the largest in their column, safety to four digits.
+
+    Examples
+    --------
+    >>> rounded(pd.DataFrame({"normal_n": [2.0, 1e-12]}))["normal_n"].tolist()
+    [2.0, 0.0]
+    """
+    table = table.copy()
+    for name in table.select_dtypes("float"):
+        column = table[name].to_numpy(float)
+        finite = np.abs(column[np.isfinite(column)])
+        if name == "safety":
+            table[name] = [float(f"{value:.4g}") for value in column]
+        elif finite.max(initial=0.0) > 0:
+            table[name] = np.round(column, 6 - int(np.ceil(np.log10(finite.max())))) + 0.0
+    return table

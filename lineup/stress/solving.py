@@ -48,7 +48,7 @@ def balanced(
     sizes = abs(stiffness)
     for _ in range(_STEPS):
         step = solve(left)
-        u = u + _length(step @ left, step, stiffness, gap, contact @ step, share) * step
+        u = u + _length(float(step @ left), step, stiffness, gap, contact @ step, share) * step
         gap = contact @ u
         left = load - stiffness @ u - contact.T @ (share * np.minimum(gap, 0))
         limit = max(BALANCED * len(voxels), _ROUNDING * float((sizes @ np.abs(u)).max()))

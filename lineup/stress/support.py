@@ -26,11 +26,17 @@ def upward(up: str | tuple[float, float, float] | FloatArray) -> FloatArray:
 
 
 def level_axes(up: FloatArray) -> FloatArray:
-    """(2, 3) two unit vectors square to `up` and to each other."""
+    """(2, 3) unit vectors square to `up` and to each other; with it they are right-handed.
+
+    Examples
+    --------
+    >>> level_axes(upward("+z")).tolist()
+    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
+    """
     across = np.eye(3)[int(np.abs(up).argmin())]
-    first = np.cross(up, across)
+    first = across - (across @ up) * up
     first /= np.linalg.norm(first)
-    return np.array([first, np.cross(up, first)])
+    return np.array([first, np.cross(up, first)]) + 0.0  # no -0
 
 
 def tip_margin(points: FloatArray, centre: FloatArray) -> float:

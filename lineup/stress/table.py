@@ -80,7 +80,7 @@ def table_of(borne: Borne, setting: Setting, start: int) -> pd.DataFrame:
     tension, compression = (edge + along) * pascal, (edge - along) * pascal
     pushing = np.isin(borne.kind, (TOUCH, TABLE))
     tension[pushing] = compression[pushing] = np.nan
-    whole = (np.abs(borne.normal) > 1 - 1e-9).any(axis=1)
+    whole: BoolArray = np.abs(borne.normal).max(axis=1) > 1 - 1e-9
     kept = np.where(borne.second >= 0, borne.second + start, -1)
     rows = {
         "kind": [KINDS[k] for k in borne.kind.tolist()],

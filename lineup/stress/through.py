@@ -32,7 +32,7 @@ _CORNER = 0.5  # how much a bar's direction changes at a corner, at the least, i
 
 def standing(
     shape: Folding | Motion,
-    moves: Sequence[int] | None = None,
+    moves: Sequence[int] | int = 9,
     pitch_mm: float = 10.0,
     *,
     density: float = DENSITY,
@@ -49,9 +49,9 @@ def standing(
     Parameters
     ----------
     shape : Folding or Motion
-    moves : sequence of int, optional
-        Poses to look at: after so many moves from the folded pose. By default nine, at equal
-        numbers of moves from the first to the last.
+    moves : sequence of int, or int
+        Poses to look at: after so many moves from the folded pose. One number is that of the
+        poses, at equal numbers of moves from the first to the last.
     pitch_mm, density, bonding, up
         As `strength`.
     rods : str
@@ -61,7 +61,7 @@ def standing(
     Returns
     -------
     DataFrame
-        A row for each of `moves`, in the order given:
+        A row for each pose, in the order given:
 
         - ``move``; ``folded``: voxels of the body; ``first``, ``last``: its joints, -1 if none;
         - ``stands``, ``margin_mm``, ``safety``, ``sag_mm``, ``reason``: as `Strength`, of the
@@ -89,8 +89,8 @@ def standing(
     if rods not in RODS:
         raise ValueError(f"rods must be one of {list(RODS)}, got {rods!r}")
     motion = shape.motion if isinstance(shape, Folding) else shape
-    if moves is None:
-        moves = np.rint(np.linspace(0, len(motion), 9)).astype(int).tolist()
+    if isinstance(moves, int):
+        moves = _moments(len(motion), moves)
     wrong = [k for k in moves if not 0 <= k <= len(motion)]
     if wrong:
         raise ValueError(f"moves must be from 0 to {len(motion)}, got {wrong[0]}")
@@ -168,3 +168,10 @@ def _row(k: int, pose: IntArray, motion: Motion, setting: Setting, rods: str) ->
         "below_mm": float(below) * pitch,
         "reason": result.reason,
     }
+
+
+def _moments(n_moves: int, count: int) -> list[int]:
+    """So many numbers of moves at equal steps, from none to all."""
+    if count < 2:
+        raise ValueError(f"at least 2 poses, the first and the last, can be looked at, got {count}")
+    return sorted({int(k) for k in np.rint(np.linspace(0, n_moves, count))})
