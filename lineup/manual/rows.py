@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
@@ -67,57 +67,55 @@ def rows_of(assembly: Assembly) -> list[BlockRow]:
     [1, 2]
     """
     number = assembly.number.reshape(-1, 2)
-    swings = _swings(assembly)
-    order = np.lexsort([number.min(axis=1), number.max(axis=1)])
-    frames = bar_frames(assembly.word)
-    letters = f".{assembly.word.letters}."
+    order = np.lexsort([number.min(axis=1), number.max(axis=1)]).tolist()
+    poses, swings = _poses(assembly), _swings(assembly)
     return [
-        _row(assembly, int(i), k, frames, letters, swings) for k, i in enumerate(order, start=1)
+        BlockRow(order=k, block=i + 1, **poses[i], **_work(assembly, i, swings))
+        for k, i in enumerate(order, start=1)
     ]
 
 
-def _row(
-    assembly: Assembly,
-    i: int,
-    order: int,
-    frames: IntArray,
-    letters: str,
-    swings: dict[int, list[str]],
-) -> BlockRow:
-    first, second = 2 * i, 2 * i + 1
-    at = [int(assembly.number[joint]) for joint in (first, second)]
-    late = first if at[0] > at[1] else second
-    done = [assembly.actions[n - 1] for n in sorted(at) if n]
-    (x1, y1, z1), (x2, y2, z2) = assembly.folding.path.voxels[[first, second]].tolist()
-    swung = [text for n in sorted(at) for text in swings.get(n, [])]
-    column, row, layer = assembly.places[late].tolist()
-    last = second + 1 == len(letters)
-    return BlockRow(
-        order=order,
-        step=_step(assembly, max(at)),
-        block=i + 1,
-        end=ENDS[done[-1].end] if done else "base",
-        x1=x1,
-        y1=y1,
-        z1=z1,
-        x2=x2,
-        y2=y2,
-        z2=z2,
-        frame="".join(_letter(axis) for axis in frames[first].T),
-        hinge=_letter(frames[first][:, 0]),
-        piece="" if last else _letter(frames[second][:, 0]),
-        joint1=letters[first].strip("."),
-        joint2=letters[second].strip("."),
-        at1=at[0],
-        at2=at[1],
-        swings=" ".join(swung),
-        bends="".join(bend(assembly, action) for action in done),
-        loose="".join(assembly.build.letters[action.loose] for action in done),
-        twists=int(np.isin([*at, *(int(s.split(":")[0]) for s in swung)], assembly.twists).sum()),
-        column=column,
-        row=row,
-        layer=layer,
-    )
+def _poses(assembly: Assembly) -> list[dict[str, Any]]:
+    """Of each block, the entries that tell of the folded pose, in the model's frame."""
+    frames = bar_frames(assembly.word)
+    voxels = assembly.folding.path.voxels.tolist()
+    joints = ["", *assembly.word.letters, ""]
+    pieces = [*(_letter(frame[:, 0]) for frame in frames[1::2]), ""]
+    names = ("x1", "y1", "z1", "x2", "y2", "z2")
+    return [
+        dict(zip(names, voxels[2 * i] + voxels[2 * i + 1], strict=True))
+        | {
+            "frame": "".join(_letter(axis) for axis in frames[2 * i].T),
+            "hinge": _letter(frames[2 * i][:, 0]),
+            "piece": pieces[i],
+            "joint1": joints[2 * i],
+            "joint2": joints[2 * i + 1],
+        }
+        for i in range(assembly.n_blocks)
+    ]
+
+
+def _work(assembly: Assembly, i: int, swings: dict[int, list[str]]) -> dict[str, Any]:
+    """The entries of block i that tell what is done, on the card."""
+    at1, at2 = assembly.number[2 * i : 2 * i + 2].tolist()
+    numbers = sorted((at1, at2))
+    done = [assembly.actions[n - 1] for n in numbers if n]
+    swung = [text for n in numbers for text in swings.get(n, [])]
+    numbers += [int(text.split(":")[0]) for text in swung]
+    column, row, layer = assembly.places[2 * i if at1 > at2 else 2 * i + 1].tolist()
+    return {
+        "step": _step(assembly, max(at1, at2)),
+        "end": ENDS[done[-1].end] if done else "base",
+        "at1": at1,
+        "at2": at2,
+        "swings": " ".join(swung),
+        "bends": "".join(bend(assembly, action) for action in done),
+        "loose": "".join(assembly.build.letters[action.loose] for action in done),
+        "twists": int(np.isin(numbers, assembly.twists).sum()),
+        "column": column,
+        "row": row,
+        "layer": layer,
+    }
 
 
 def bend(assembly: Assembly, action: Action) -> str:
