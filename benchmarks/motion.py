@@ -75,9 +75,9 @@ def moves_of(motion: lu.Motion) -> Found:
 
 
 def row_of(shape: lu.VoxelSolid, method: str, find: Callable[[], Found]) -> dict[str, Any]:
-    start = time.perf_counter()
+    start = time.process_time()
     motion, steps = find()
-    seconds = time.perf_counter() - start
+    seconds = time.process_time() - start
     least = motion.diameter if method == "energy" else DIAMETER
     verdict = lu.certify(motion, diameter=least, max_bend_deg=motion.max_bend_deg)
     paper = PAPER.get(shape.name)
