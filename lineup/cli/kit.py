@@ -40,7 +40,7 @@ def kit(
 def _steps(
     model: str, file: Path, blocks: int, pitch_mm: float, out: Path, seed: int
 ) -> Iterator[Callable[[], None]]:
-    yield lambda: run_models([model], blocks=blocks, out=out, seed=seed)
+    yield lambda: run_models([model], blocks=blocks, out=out, seed=seed, joints="slotted")
     yield lambda: print_chain(file, pitch_mm=pitch_mm, out=out / "print")
     yield lambda: manual(file, pitch_mm=pitch_mm, out=out)
     yield lambda: strength(file, pitch_mm=pitch_mm, through=12, out=out)
