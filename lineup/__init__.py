@@ -55,6 +55,7 @@ _HOME = {
     "export_print": "fabrication",
     "write_manual": "manual",
     "read_manual": "manual",
+    "standing_by_step": "manual",
     "save": "storage",
     "load": "storage",
     "write_player": "viewer",

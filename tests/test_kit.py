@@ -1,9 +1,13 @@
 """From one model to a folder with all that it takes, and chains that printed blocks can be."""
 
+import json
+
+import pandas as pd
 import pytest
 
 import lineup as lu
 from lineup import cli
+from lineup.grid import DIRECTIONS, LETTERS
 
 
 @pytest.fixture(scope="module")
@@ -48,3 +52,18 @@ def test_a_design_for_slots_is_judged_for_slots():
 def test_joints_of_no_known_kind_are_refused():
     with pytest.raises(ValueError, match="joints must be one of"):
         lu.lineup(["duck"], blocks=30, joints="rubber")
+
+
+def test_whether_it_stands_is_told_for_each_step_of_the_manual(kit):
+    steps = lu.standing_by_step(kit[0] / "duck.manual.json")
+    told = pd.read_csv(kit[0] / "duck.standing.csv")
+    assert told["step"].tolist() == list(range(1, len(steps) + 1))
+    assert told["folded"].iloc[-1] == 40
+    assert told["folded"].is_monotonic_increasing
+    assert told["stands"].tolist() == steps["stands"].tolist()
+    down = json.loads((kit[0] / "duck.manual.json").read_text())["build"]["down"]
+    up = tuple(-DIRECTIONS[LETTERS.index(down)])
+    whole = lu.strength(lu.load(kit[0] / "duck.folding.json"), up=up)
+    assert told["margin_mm"].iloc[-1] == pytest.approx(whole.margin_mm, abs=1e-3)
+    with pytest.raises(ValueError, match=r"has no steps; give the NAME\.manual\.json"):
+        lu.standing_by_step(kit[0] / "duck.manual.csv")

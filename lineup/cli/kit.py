@@ -24,9 +24,10 @@ def kit(
     seed: Seed = 0,
 ) -> None:
     """Fold a model, and write print files, manual, strength report and player of its chain."""
-    file = out / f"{Path(readable(model)).stem}.folding.json"
+    name = Path(readable(model)).stem
+    file = out / f"{name}.folding.json"
     fell_short = False
-    for step in _steps(model, file, blocks, pitch_mm, out, seed):
+    for step in _steps(model, name, blocks, pitch_mm, out, seed):
         try:
             step()
         except typer.Exit:  # what fell short is said, and the rest may still be of use
@@ -38,10 +39,11 @@ def kit(
 
 
 def _steps(
-    model: str, file: Path, blocks: int, pitch_mm: float, out: Path, seed: int
+    model: str, name: str, blocks: int, pitch_mm: float, out: Path, seed: int
 ) -> Iterator[Callable[[], None]]:
+    file = out / f"{name}.folding.json"
     yield lambda: run_models([model], blocks=blocks, out=out, seed=seed, joints="slotted")
     yield lambda: print_chain(file, pitch_mm=pitch_mm, out=out / "print")
     yield lambda: manual(file, pitch_mm=pitch_mm, out=out)
-    yield lambda: strength(file, pitch_mm=pitch_mm, through=12, out=out)
+    yield lambda: strength(file, pitch_mm=pitch_mm, manual=out / f"{name}.manual.json", out=out)
     yield lambda: play([file], out=out)

@@ -28,13 +28,18 @@ def strength(
     through: Annotated[
         int, typer.Option(help="Moments of the motion to look at, too; 0 for none.")
     ] = 0,
+    manual: Annotated[
+        Path | None,
+        typer.Option(help="NAME.manual.json: look at the body after each of its steps."),
+    ] = None,
     out: Out = Path("."),
 ) -> None:
     """Write what each face bears under the model's own weight: NAME.strength.csv, .md, .png.
 
-    With --through, whether it stands while it is folded: NAME.standing.csv, .md, .png.
+    With --through or --manual, whether it stands while it is folded: NAME.standing.csv, .md, .png.
     """
     from .. import draw, stress
+    from ..manual import standing_by_step
     from ..stress.results import DENSITY, shortfall, summary
     from ..verification import stored_name
 
@@ -49,9 +54,14 @@ def strength(
     written = _written(result.table, out / f"{name}.strength", row)
     if result.stands:
         written.append(draw.save(draw.strength(result), out / f"{name}.strength.png"))
-    if through:
-        folding = _folding(shape, file)
-        table = stress.standing(folding, through, pitch_mm, density=kg_m3, bonding=bonding, up=up)
+    if manual or through:
+        if manual:
+            table = standing_by_step(manual, pitch_mm, density=kg_m3, bonding=bonding)
+        else:
+            folding = _folding(shape, file)
+            table = stress.standing(
+                folding, through, pitch_mm, density=kg_m3, bonding=bonding, up=up
+            )
         written += _written(table, out / f"{name}.standing")
         written.append(draw.save(draw.standing(table), out / f"{name}.standing.png"))
         some = table[table["folded"] > 0]
