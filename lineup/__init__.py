@@ -45,6 +45,8 @@ _HOME = {
     "transform": "transformation",
     "through_tube": "scenarios",
     "into_capsule": "scenarios",
+    "export_robot": "robot",
+    "Robot": "robot",
     "save": "storage",
     "load": "storage",
     "lineup": "pipeline",

@@ -33,7 +33,17 @@ ORDER = [
     *("visits", "reeb", "planar", "linking", "assumptions", "paper", "spatial", "refinement"),
     *("layered", "bounds", "subset_sums", "contraction"),
     *("motion", "folding", "trimming", "transformation", "scenarios"),
-    *("storage", "verification", "pipeline", "_sources", "engines", "sweep", "tables", "draw"),
+    *(
+        "storage",
+        "robot",
+        "verification",
+        "pipeline",
+        "_sources",
+        "engines",
+        "sweep",
+        "tables",
+        "draw",
+    ),
     *("_progress", "cli"),
 ]
 

@@ -12,7 +12,7 @@ from typing import NoReturn
 
 import typer
 
-from . import chains, experiments
+from . import chains, experiments, robot
 from .experiments import EXPERIMENTS
 
 __all__ = ["EXPERIMENTS", "app", "main", "run"]
@@ -33,6 +33,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "voxelize": chains.voxelize,
     "path": chains.path,
     "unfold": chains.unfold,
+    "robot": robot.robot,
     "sweep": experiments.sweep,
 }
 for name, command in COMMANDS.items():
