@@ -5,14 +5,14 @@ The paper calls them mild, and easily met by a solid of high resolution. Here th
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from itertools import pairwise
 
 import numpy as np
 import pandas as pd
 from scipy import ndimage
 
-from ._record import record
+from ._record import listed, record
 from .grid import BoolArray, IntArray
 from .planar.faces import Cell, connected_cells, is_cycle, outer_walk
 from .planar.paper import (
@@ -194,6 +194,8 @@ def audit_summary(solids: Iterable[VoxelSolid]) -> pd.DataFrame:
     >>> lu.audit_summary([block])[["name", "nodes", "nodes_met", "voxels_met"]].values.tolist()
     [['block', 5, 1.0, 1.0]]
     """
+    if not isinstance(solids, Iterator):
+        listed(solids, "solids")
     return pd.DataFrame([_summary(solid) for solid in solids])
 
 

@@ -11,6 +11,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import maximum_flow
 
 from . import grid
+from ._record import of_kind
 from .grid import IntArray
 from .solid import VoxelSolid
 
@@ -41,6 +42,7 @@ def path_bound(solid: VoxelSolid, u_free: bool = False) -> int:
     >>> lu.path_bound(lu.VoxelSolid(cross))
     3
     """
+    of_kind(solid, VoxelSolid)
     voxels = np.argwhere(solid.occupancy).astype(np.int32)
     n = len(voxels)
     number = np.full(np.array(solid.occupancy.shape) + 2, -1, np.int64)

@@ -215,9 +215,11 @@ def _procedural(name: str) -> Surface:
 
 
 def _entry(name: str) -> _Entry:
+    if not isinstance(name, str):
+        raise ValueError(f"a model is given by its name, got {type(name).__name__}")
     entries = _entries()
     if name not in entries:
-        near = difflib.get_close_matches(str(name), entries, n=3)
+        near = difflib.get_close_matches(name, entries, n=3)
         hint = f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(entries)}"
         raise ValueError(f"unknown model {name!r}; {hint}")
     return entries[name]

@@ -8,6 +8,7 @@ from enum import IntEnum
 
 import numpy as np
 
+from ._record import of_kind
 from .grid import DIRECTIONS, FloatArray, IntArray
 from .solid import Motion
 
@@ -82,6 +83,7 @@ def frames(motion: Motion, every: int = 1, substeps: int = 1) -> Iterator[FloatA
     >>> len(poses), int(np.ptp(poses[-1], axis=0).max())
     (2, 3)
     """
+    of_kind(motion, Motion)
     if every < 1 or substeps < 1:
         raise ValueError(f"every and substeps must be at least 1, got {every} and {substeps}")
     return _frames(motion, every, substeps)

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ._options import checked
+from ._record import of_kind
 from .linking import Effort, assembled, layers, linked, promising_plan
 from .paper import algorithm3
 from .refinement import REFINED
@@ -63,6 +64,7 @@ def layered_path(
     >>> len(path), path.visits[:, 2:].tolist()
     (24, [[1, 0], [0, 0]])
     """
+    of_kind(solid, VoxelSolid)
     checked(PATH_METHODS, method, options, "path method")
     if solid.size < 2 and method not in REFINED:
         raise ValueError("a path needs at least two voxels, the solid has 1")

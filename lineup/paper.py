@@ -15,6 +15,7 @@ import numpy as np
 import pandas as pd
 
 from . import planar
+from ._record import of_kind
 from .assumptions import HOLE, NO_COMMON_INTERIOR, NO_LINK_INSIDE, anatomy, hanging_from
 from .assumptions import REASONS as ASSUMED
 from .grid import BoolArray, IntArray
@@ -83,6 +84,7 @@ def algorithm3(solid: VoxelSolid, seed: int = 0) -> Algorithm3:
     >>> found.nodes[["how", "reasons", "voxels"]].values.tolist()
     [['Algorithm 2', '', 42], ['Algorithm 2', '', 42]]
     """
+    of_kind(solid, VoxelSolid)
     if seed < 0:
         raise ValueError(f"seed must be at least 0, got {seed}")
     if solid.size < 2:

@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from . import grid
-from ._record import record
+from ._record import of_kind, record
 from .solid import VoxelSolid
 
 
@@ -70,6 +70,7 @@ def reeb_graph(solid: VoxelSolid) -> ReebGraph:
     >>> graph.layer_of.tolist(), graph.edges.tolist()
     ([0, 0, 1], [[0, 2], [1, 2]])
     """
+    of_kind(solid, VoxelSolid)
     occupancy = solid.occupancy
     label, n = grid.layer_components(occupancy)
     node_of = _renumbered(label, n)
@@ -124,6 +125,7 @@ def traverse(
     >>> lu.traverse(lu.reeb_graph(lu.VoxelSolid(arch)), root=2, end=0)
     Traversal(walk=(2, 1, 2, 0), msp=(2, 0), mscs=((2, 1, 2),))
     """
+    of_kind(graph, ReebGraph)
     if walk is not None:
         if root is not None or end is not None:
             raise ValueError("give either walk or root and end, not both")

@@ -17,6 +17,7 @@ from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 
 from . import grid
 from ._jit import kernel
+from ._record import of_kind
 from .solid import VoxelPath, VoxelSolid
 from .visits import visits_of
 
@@ -55,6 +56,7 @@ def refine(solid: VoxelSolid, k: int) -> VoxelSolid:
     >>> fine.size, fine.pitch, fine.source
     (192, 5.0, {'refined': 2})
     """
+    of_kind(solid, VoxelSolid)
     if not isinstance(k, int | np.integer) or k < 1:
         raise ValueError(f"k must be a positive integer, got {k!r}")
     source = solid.source | {"refined": int(k) * solid.source.get("refined", 1)}

@@ -11,7 +11,7 @@ import numpy as np
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
-from ._record import record
+from ._record import of_kind, record
 from .folding import fold
 from .grid import DIRECTIONS, BoolArray, FloatArray, IntArray, bar_directions
 from .judging import certify
@@ -216,6 +216,7 @@ def _track_out(motion: Motion, shape: tuple[int, ...]) -> IntArray:
 
 
 def _path(shape: Folding | VoxelPath) -> IntArray:
+    of_kind(shape, Folding, VoxelPath)
     return (shape.path if isinstance(shape, Folding) else shape).voxels
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from . import grid
-from ._record import record
+from ._record import of_kind, record
 
 
 @record
@@ -213,6 +213,8 @@ class Folding:
     motion: Motion
 
     def __post_init__(self) -> None:
+        of_kind(self.path, VoxelPath)
+        of_kind(self.motion, Motion)
         if not np.array_equal(self.path.voxels, self.motion.start):
             raise ValueError("the motion does not start at the path")
 

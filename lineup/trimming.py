@@ -10,6 +10,7 @@ import numpy as np
 
 from . import grid
 from ._options import checked
+from ._record import listed, of_kind
 from .contraction import contracted, contraction_pairs, occupancy_of, shortened_path
 from .folding.shorten import shortened_folding
 from .grid import BoolArray
@@ -110,7 +111,8 @@ def trim(
     [64, 64]
     """
     checked(TRIM_METHODS, method, options, "trimming method")
-    if not items:
+    listed(items, "items")
+    if not len(items):
         raise ValueError("there is nothing to trim; give at least one path or folding")
     lengths = [len(_path(item)) for item in items]
     odd = [n for n in lengths if n % 2]
@@ -125,6 +127,7 @@ def trim(
 
 
 def _path(item: VoxelPath | Folding) -> VoxelPath:
+    of_kind(item, VoxelPath, Folding)
     return item.path if isinstance(item, Folding) else item
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .judging import certify, certify_path
+from .judging import certify, certify_path, check_limits
 from .solid import Certificate, Design, Folding, Motion, VoxelPath, VoxelSolid
 from .storage import load
 
@@ -40,12 +40,13 @@ def stored_name(file: Path) -> str:
 
 
 def verdicts(
-    file: Path, diameter: float = 0.999, max_bend_deg: float = 90.0
+    file: Path, diameter: float | None = None, max_bend_deg: float | None = None
 ) -> Iterator[tuple[str, Certificate]]:
     """What the judge says of each part of a stored result.
 
     A path is judged against the solid stored beside it (NAME.solid.json); where there is none,
-    against the voxels that it visits and those that it says it drops.
+    against the voxels that it visits and those that it says it drops. A motion is judged at the
+    diameter and the bend that it claims itself, unless others are given.
 
     Raises
     ------
@@ -65,12 +66,23 @@ def verdicts(
         yield "path", certify_path(path, solid)
     if isinstance(stored, (Motion, Folding)):
         motion = stored if isinstance(stored, Motion) else stored.motion
-        yield "motion", certify(motion, diameter, max_bend_deg)
+        yield "motion", _judged(motion, diameter, max_bend_deg)
     if isinstance(stored, Design):
         yield "lengths", _common_length(stored)
         for solid, folding in zip(stored.models, stored.foldings, strict=True):
             yield f"{solid.name} path", certify_path(folding.path, solid)
-            yield f"{solid.name} motion", certify(folding.motion, diameter, max_bend_deg)
+            yield f"{solid.name} motion", _judged(folding.motion, diameter, max_bend_deg)
+
+
+def _judged(motion: Motion, diameter: float | None, max_bend_deg: float | None) -> Certificate:
+    check_limits(diameter, max_bend_deg)
+    diameter = motion.diameter if diameter is None else diameter
+    max_bend_deg = motion.max_bend_deg if max_bend_deg is None else max_bend_deg
+    try:
+        check_limits(diameter, max_bend_deg)
+    except ValueError as error:
+        return Certificate(False, f"its claim cannot be judged: {error}")
+    return certify(motion, diameter, max_bend_deg)
 
 
 def _own_solid(path: VoxelPath) -> VoxelSolid:

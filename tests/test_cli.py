@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -151,11 +152,77 @@ def test_verify_believes_no_file(lineup, tmp_path):
     lu.save(a_folding(np.array([[Move.SWING, 1, 2, 3]], np.int32)), bad)
     code, out, err = lineup("verify", good)
     assert (code, err) == (0, "")
-    assert "motion: certified (diameter 0.999, bends up to 90°, clearance" in out
+    assert "motion: certified (diameter 0.999, bends up to 90°, clearance 1.0000, 1 moves)" in out
     code, out, err = lineup("verify", tmp_path)
     assert code == 1
     assert out.count("FAILS") == 1
     assert err.startswith(f"falls short: {bad} motion: ")
+    assert err.endswith("(diameter 0.999, bends up to 90°)\n")
+
+
+def test_verify_judges_each_motion_at_what_it_claims(lineup, tmp_path):
+    lu.save(lu.VoxelSolid(np.ones((3, 2, 1), bool)), tmp_path / "c.solid.json")
+    lineup("path", "c.solid.json")
+    lineup("unfold", "c.path.json", "--method", "pull")
+    lu.save(a_folding(), tmp_path / "d.folding.json")
+    code, out, err = lineup("verify", ".")
+    assert (code, err) == (0, "")
+    pulled, peeled = [line for line in out.splitlines() if " motion: " in line]
+    assert "certified (diameter 0.866, bends up to 120°, clearance 0.8660, " in pulled
+    assert "certified (diameter 0.999, bends up to 90°, " in peeled
+    for option, value in (("--diameter", 0.999), ("--max-bend", 90)):
+        code, out, _ = lineup("verify", "c.folding.json", "d.folding.json", option, value)
+        assert code == 1
+        failed = [line for line in out.splitlines() if line.startswith("FAILS")]
+        assert len(failed) == 1
+        assert failed[0].startswith("FAILS c.folding.json motion: ")
+
+
+@pytest.mark.parametrize(
+    "claim", [{"diameter": 0.0}, {"diameter": -1.0}, {"max_bend_deg": 0.0}, {"max_bend_deg": 181.0}]
+)
+def test_a_claim_that_means_nothing_falls_short(lineup, tmp_path, claim):
+    folding = a_folding()
+    motion = replace(folding.motion, **claim)
+    lu.save(lu.Folding(folding.path, motion), tmp_path / "c.folding.json")
+    code, _, err = lineup("verify", "c.folding.json")
+    assert code == 1
+    (value,) = claim.values()
+    assert err.startswith("falls short: c.folding.json motion: its claim cannot be judged: ")
+    assert err.endswith(f"got {value}\n")
+
+
+def test_bars_that_collide_are_refused_whatever_the_motion_claims(lineup, tmp_path):
+    bars = a_folding(np.array([[Move.SWING, 1, 2, 3]], np.int32))
+    motion = replace(bars.motion, diameter=1e-9, max_bend_deg=180.0)
+    lu.save(lu.Folding(bars.path, motion), tmp_path / "c.folding.json")
+    code, _, err = lineup("verify", "c.folding.json")
+    assert code == 1
+    assert "bars 0 and 2 come within 0, " in err
+    assert "(at 0, diameter 1e-09, bends up to 180°)" in err
+
+
+def test_verify_goes_on_after_a_file_that_cannot_be_read(lineup, tmp_path):
+    lu.save(a_folding(), tmp_path / "b.folding.json")
+    (tmp_path / "a.folding.json").write_text("{}")
+    text = (tmp_path / "b.folding.json").read_text()
+    (tmp_path / "c.folding.json").write_text(text.replace("s1+E", "s1+Q"))
+    lu.save(lu.VoxelPath(np.array([[0, 0, -1], [0, 0, 0]])), tmp_path / "d.path.json")
+    code, out, err = lineup("verify", ".")
+    assert code == 1
+    wrong = [
+        "a.folding.json: format: Field required",
+        "c.folding.json: move 0 reads 's1+Q', which",
+        "d.path.json: a voxel of the path has a negative coordinate: -1",
+    ]
+    said = out.splitlines()
+    for line, expected in zip([said[0], *said[3:]], wrong, strict=True):
+        assert line.startswith(f"FAILS {expected}")
+    assert [line[:22] for line in said[1:3]] == [
+        "ok    b.folding.json pa",
+        "ok    b.folding.json mo",
+    ]
+    assert err == "".join(f"falls short: {said[k][6:]}\n" for k in (0, 3, 4))
 
 
 def test_verify_judges_a_path_against_the_solid_beside_it(lineup, tmp_path):

@@ -2,32 +2,41 @@
 
 import ast
 import importlib
+import re
+import typing
 from pathlib import Path
 
+import numpy as np
 import pytest
+from numba import TypingError
 from numba.core.dispatcher import Dispatcher
 
 import lineup
 from lineup import _jit
+from lineup.folding._fold import Fold
+from lineup.grid import IntArray
 
 PACKAGE = Path(lineup.__file__).parent
-KERNEL_FILES = [f for f in sorted(PACKAGE.rglob("*.py")) if "@kernel" in f.read_text()]
+KERNEL_FILES = [
+    f for f in sorted(PACKAGE.rglob("*.py")) if re.search("@(kernel|part)", f.read_text())
+]
 KERNEL_FILES.remove(PACKAGE / "_jit.py")
 
 
 @pytest.fixture
 def package(tmp_path, monkeypatch):
-    """A package of two kernel files, one deep inside, and a file without kernels."""
+    """A package of three kernel files, one deep inside, and a file without kernels."""
     monkeypatch.setattr(_jit, "__file__", str(tmp_path / "_jit.py"))
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     (tmp_path / "deep").mkdir()
     (tmp_path / "loops.py").write_text("@kernel\ndef f(x):\n    return x\n")
     (tmp_path / "deep" / "loops.py").write_text("@kernel\ndef g(x):\n    return x\n")
+    (tmp_path / "parts.py").write_text("@part\ndef p(x):\n    return x\n")
     (tmp_path / "plain.py").write_text("def h(x):\n    return x\n")
     return tmp_path
 
 
-@pytest.mark.parametrize("file", ["loops.py", "deep/loops.py"])
+@pytest.mark.parametrize("file", ["loops.py", "deep/loops.py", "parts.py"])
 def test_the_cache_folder_is_another_when_a_kernel_changes(package, file):
     before = _jit._cache_folder()
     assert before == _jit._cache_folder()
@@ -62,6 +71,56 @@ def test_a_kernel_has_no_python_fallback():
     assert isinstance(doubled, Dispatcher)
     assert doubled(21) == 42
     assert doubled.nopython_signatures
+
+
+def test_a_kernel_is_compiled_once_for_all_constants():
+    called = _jit.kernel(lambda x, y: x + y)
+    caller = _jit.kernel(lambda x: called(x, 1) + called(2, x) + called(3, 4))
+    assert caller(5) == 20
+    assert len(called.signatures) == 1
+
+
+def test_a_part_is_called_by_kernels_only():
+    doubled = _jit.part(lambda x: x + x)
+    caller = _jit.kernel(lambda x: doubled(x) + 1)
+    for _ in range(2):  # before there is machine code, and after
+        with pytest.raises(TypeError, match="is a part of kernels, and Python cannot call it"):
+            doubled(20)
+        assert caller(20) == 41
+
+
+def test_a_part_that_makes_an_array_is_refused():
+    sum_of = _jit.part(lambda n: np.zeros(n).sum())
+    with pytest.raises(TypingError, match="NRT required but not enabled"):
+        _jit.kernel(lambda n: sum_of(n))(3)
+
+
+def is_counted(kind):
+    """Whether a type is an array or holds one."""
+    inner = typing.get_args(kind)
+    if typing.get_origin(kind) is np.ndarray or kind is np.ndarray:
+        return True
+    if isinstance(kind, type) and issubclass(kind, tuple):
+        inner = typing.get_type_hints(kind).values()
+    return any(is_counted(k) for k in inner)
+
+
+def parts():
+    for file in KERNEL_FILES:
+        name = ".".join(("lineup", *file.relative_to(PACKAGE).with_suffix("").parts))
+        for kernel in vars(importlib.import_module(name)).values():
+            if isinstance(kernel, Dispatcher) and not kernel.targetoptions.get("_nrt", True):
+                yield kernel.py_func
+
+
+def test_no_part_hands_an_array_back():
+    """Its caller would let go of an array that nobody counted."""
+    found = set(parts())
+    assert len(found) > 50
+    hints = {f"{f.__module__}.{f.__name__}": typing.get_type_hints(f)["return"] for f in found}
+    assert not [name for name, kind in hints.items() if is_counted(kind)]
+    assert is_counted(tuple[int, IntArray])
+    assert is_counted(Fold)
 
 
 def imported(file):

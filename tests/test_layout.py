@@ -33,17 +33,9 @@ ORDER = [
     *("visits", "reeb", "planar", "linking", "assumptions", "paper", "spatial", "refinement"),
     *("layered", "bounds", "subset_sums", "contraction"),
     *("motion", "folding", "trimming", "transformation", "scenarios"),
-    *(
-        "storage",
-        "robot",
-        "verification",
-        "pipeline",
-        "_sources",
-        "engines",
-        "sweep",
-        "tables",
-        "draw",
-    ),
+    *("stress", "storage", "robot", "verification", "pipeline", "_sources", "engines", "sweep"),
+    *("tables",),
+    *("block", "draw", "viewer", "fabrication", "manual"),
     *("_progress", "cli"),
 ]
 

@@ -1,6 +1,7 @@
 """Pull-through: the lemma by sampling, the judge's faults, the planner, and played poses."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -104,6 +105,35 @@ def test_pulled_back_it_shows_the_same_poses(track):
     back = list(lu.frames(reversed_motion(trial), substeps=7))
     for a, b in zip(lu.frames(trial, substeps=7), back[::-1], strict=True):
         assert_allclose(a, b, atol=1e-12)
+
+
+@settings(max_examples=60, deadline=None)
+@given(tracks(), st.integers(0, 2), st.data())
+def test_the_first_pull_out_of_a_box_is_the_one_refused(track, axis, data):
+    trial = pulls(*track)
+    cuts = [replace(trial, moves=trial.moves[:k]) for k in range(len(trial) + 1)]
+    reach = [lu.certify(cut, 0.866, 120).extent[axis] for cut in cuts]
+    side = data.draw(st.sampled_from(sorted(set(reach)))) - data.draw(st.sampled_from([0, 0.5]))
+    within = np.insert([np.inf, np.inf], axis, side)
+    verdict = lu.certify(trial, 0.866, 120, within=tuple(within.tolist()))
+    out = np.flatnonzero(np.array(reach) > side)
+    if len(out):
+        assert verdict.reason.endswith(f"along axis {axis}, more than the {side:g} of the box")
+        assert verdict.where == out[0] - 1
+        assert verdict.moves_checked == out[0]
+        assert verdict.extent[axis] == reach[out[0]]
+    else:
+        assert "box" not in verdict.reason
+        assert verdict.moves_checked == len(trial)
+
+
+def test_what_comes_first_is_refused_first():
+    """The third pull meets an obstacle; the box is left before that, by it, or not at all."""
+    trial, wall = pulls(LINE, "EEEN"), lu.Obstacles(np.ones((1, 1, 1), bool), np.array([9, 0, 0]))
+    for side, where, expected in ((8, 1, "box"), (9, 2, "obstacle"), (10, 2, "obstacle")):
+        verdict = lu.certify(trial, 0.866, 120, within=(side, 9, 9), obstacles=wall)
+        assert verdict.where == where
+        assert expected in verdict.reason
 
 
 def test_the_constants_are_met():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from dataclasses import replace
 from pathlib import Path
@@ -27,6 +28,7 @@ Box = Annotated[
     tuple[int, int, int] | None,
     typer.Option(help="Box that a motion from shape to shape stays in, X Y Z in pitches."),
 ]
+Joints = Annotated[str, typer.Option(help="free, or slotted: no printed capsule has to twist.")]
 Voxels = Annotated[int, typer.Option(help="Voxels to aim at; a stored solid keeps its own.")]
 Workers = Annotated[
     int | None, typer.Option(help="Processes at a time; as many as there are cores if not given.")
@@ -84,15 +86,13 @@ def solid_of(source: str, voxels: int, up: str | None = None) -> VoxelSolid:
 
 
 def told(verdict: Certificate) -> str:
-    """A verdict in words."""
-    if not verdict.ok:
-        return verdict.reason + (f" (at {verdict.where})" if verdict.where >= 0 else "")
-    if not verdict.moves_checked:
-        return verdict.reason
-    return (
-        f"{verdict.reason} (diameter {verdict.diameter:g}, bends up to {verdict.bend_deg:.0f}°, "
-        f"clearance {verdict.clearance:.4f}, {verdict.moves_checked} moves)"
-    )
+    """A verdict in words; that on a motion with the diameter and the bend it was judged at."""
+    notes = [f"at {verdict.where}"] if verdict.where >= 0 else []
+    if not math.isnan(verdict.diameter):
+        notes += [f"diameter {verdict.diameter:g}", f"bends up to {verdict.max_bend_deg:g}°"]
+        if verdict.ok:
+            notes += [f"clearance {verdict.clearance:.4f}", f"{verdict.moves_checked} moves"]
+    return verdict.reason + (f" ({', '.join(notes)})" if notes else "")
 
 
 def shortfalls(table: pd.DataFrame) -> list[str]:

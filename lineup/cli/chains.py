@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
@@ -10,6 +11,7 @@ import typer
 from ._common import (
     Blocks,
     Box,
+    Joints,
     Out,
     Seed,
     Source,
@@ -32,6 +34,7 @@ def run_models(
     out: Out = Path("out"),
     seed: Seed = 0,
     within: Box = None,
+    joints: Joints = "free",
 ) -> None:
     """Fold one chain into models or meshes of your own, and each of them into each other."""
     from .. import tables
@@ -47,6 +50,7 @@ def run_models(
             blocks=blocks,
             seed=seed,
             ends=2 if within is None else 1,
+            joints=joints,
             folder=out,
             progress=reporter,
         )
@@ -94,19 +98,41 @@ def transform(
 
 def verify(
     places: Annotated[list[Path], typer.Argument(metavar="FILE_OR_FOLDER...")],
-    diameter: Annotated[float, typer.Option(help="Bar diameter, in voxels.")] = 0.999,
-    max_bend: Annotated[float, typer.Option(help="Largest bend, in degrees.")] = 90.0,
+    diameter: Annotated[
+        float | None, typer.Option(help="Bar diameter, in voxels; else what each motion claims.")
+    ] = None,
+    max_bend: Annotated[
+        float | None, typer.Option(help="Largest bend, in degrees; else what each motion claims.")
+    ] = None,
 ) -> None:
     """Judge stored results anew."""
-    from ..verification import stored_files, verdicts
+    from ..judging import check_limits
+    from ..verification import stored_files
 
+    check_limits(diameter, max_bend)
     failures = []
     for file in [file for place in places for file in stored_files(place)]:
-        for part, verdict in verdicts(file, diameter, max_bend):
-            line = f"{file} {part}: {told(verdict)}"
-            typer.echo(f"{'ok   ' if verdict.ok else 'FAILS'} {line}")
-            failures += [] if verdict.ok else [line]
+        for ok, line in _verified(file, diameter, max_bend, alone=places == [file]):
+            typer.echo(f"{'ok   ' if ok else 'FAILS'} {line}")
+            failures += [] if ok else [line]
     end(failures)
+
+
+def _verified(
+    file: Path, diameter: float | None, max_bend: float | None, alone: bool
+) -> Iterator[tuple[bool, str]]:
+    """What to say of each part of a file; among others, one that cannot be read just fails."""
+    from ..verification import verdicts
+
+    parts = verdicts(file, diameter, max_bend)
+    try:
+        for part, verdict in parts:
+            yield verdict.ok, f"{file} {part}: {told(verdict)}"
+    except (OSError, ValueError) as error:
+        if alone:
+            raise
+        fault = str(error)
+        yield False, fault if fault.startswith(str(file)) else f"{file}: {fault}"
 
 
 def models(

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ._common import Out, end, motion_in, told
+from ._common import Joints, Out, end, motion_in, told
+
+if TYPE_CHECKING:
+    from ..robot import Robot
 
 
 def robot(
@@ -19,7 +22,7 @@ def robot(
     base: Annotated[
         int | None, typer.Option(help="Piece to clamp; the middle one if none.")
     ] = None,
-    joints: Annotated[str, typer.Option(help="free, or slotted as the printed block's.")] = "free",
+    joints: Joints = "free",
     gravity: Annotated[float, typer.Option(help="In m/s^2.")] = 9.81,
     move_seconds: Annotated[float, typer.Option(help="Seconds of a quarter turn.")] = 1.0,
 ) -> None:
@@ -42,22 +45,26 @@ def robot(
         gravity=gravity,
         move_seconds=move_seconds,
     )
-    survey = made.survey
     typer.echo(f"{len(motion)} moves, {told(verdict)}")
-    typer.echo(
-        f"{survey.held_nm.size} joints, {len(survey.trajectory)} changes of angle, "
-        f"{survey.trajectory.n_flips} flips, joints within {survey.deviation:.2g} pitches"
-    )
-    typer.echo(
-        f"{1000 * made.bodies.block_kg:.3g} g a block, clamped at piece {made.base}: "
-        f"up to {survey.held_nm.max():.3g} N m to hold, {survey.moved_nm.max():.3g} N m to move"
-    )
-    for row in made.actuators.to_dict("records"):
-        typer.echo(
-            f"{row['actuator']}: {row['torque_per_kg']:.3g} N m/kg of the "
-            f"{row['held_per_kg']:.3g} needed, enough for {row['level_blocks']} blocks straight "
-            f"and level, for all at {row['largest_gravity']:.2g} m/s^2"
-        )
+    for line in _summary(made):
+        typer.echo(line)
     for written in made.files:
         typer.echo(f"written: {written}")
     end([] if verdict.ok else [told(verdict)])
+
+
+def _summary(made: Robot) -> list[str]:
+    """What the motion comes to, and what actuators lack."""
+    survey = made.survey
+    return [
+        f"{survey.held_nm.size} joints, {len(survey.trajectory)} changes of angle, "
+        f"{survey.trajectory.n_flips} flips, joints within {survey.deviation:.2g} pitches",
+        f"{1000 * made.bodies.block_kg:.3g} g a block, clamped at piece {made.base}: "
+        f"up to {survey.held_nm.max():.3g} N m to hold, {survey.moved_nm.max():.3g} N m to move",
+        *(
+            f"{row['actuator']}: {row['torque_per_kg']:.3g} N m/kg of the "
+            f"{row['held_per_kg']:.3g} needed, enough for {row['level_blocks']} blocks straight "
+            f"and level, for all at {row['largest_gravity']:.2g} m/s^2"
+            for row in made.actuators.to_dict("records")
+        ),
+    ]

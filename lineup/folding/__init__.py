@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from .._options import checked
+from .._record import of_kind
 from ..solid import Folding, VoxelSolid
 from .growing import growth
 from .layerwise import layered_folding, paper_folding, top_ends_folding
@@ -57,6 +58,7 @@ def fold(
     >>> len(folding.path), lu.certify(folding.motion).ok
     (48, True)
     """
+    of_kind(solid, VoxelSolid)
     checked(FOLD_METHODS, method, options, "fold method")
     if solid.size < 2:
         raise ValueError("a path needs at least two voxels, the solid has 1")

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._jit import kernel
+from .._jit import kernel, part
 from ..grid import BoolArray, FloatArray, IntArray
 from ..motion._chain import Grid
 
@@ -143,7 +143,7 @@ def _set_up(fold: Fold, path: IntArray, states: IntArray) -> None:
     commit(fold)
 
 
-@kernel
+@part
 def _add(
     fold: Fold, event: int, end: int, at: int, rod: int, before: int, other: int, other_rod: int
 ) -> None:
@@ -157,7 +157,7 @@ def _add(
     fold.n_log[0] = 0
 
 
-@kernel
+@part
 def put(fold: Fold, row: int, number: int, value: int) -> None:
     """Write a note, and log what it was."""
     entry = fold.log[fold.n_log[0]]
@@ -189,7 +189,7 @@ def commit(fold: Fold) -> None:
         spread_labels(fold, AFTER, TIME)
 
 
-@kernel
+@part
 def spread_labels(fold: Fold, onward: int, label: int) -> None:
     """Label path or plan anew, evenly."""
     root = root_of(fold)
@@ -200,7 +200,7 @@ def spread_labels(fold: Fold, onward: int, label: int) -> None:
         number = fold.notes[onward, number]
 
 
-@kernel
+@part
 def end_after(fold: Fold, event: int, end: int) -> tuple[int, int]:
     """Where an event leaves an end, and its rod then; its tip and -1 before it has started."""
     root = root_of(fold)
@@ -212,7 +212,7 @@ def end_after(fold: Fold, event: int, end: int) -> tuple[int, int]:
     return fold.notes[BACK if end else NEXT, root], -1
 
 
-@kernel
+@part
 def label_step(fold: Fold, label: int, low: int, high: int, n: int) -> int:
     """The step that spreads n labels evenly between two numbers; 0 if they do not fit in.
 
@@ -227,7 +227,7 @@ def label_step(fold: Fold, label: int, low: int, high: int, n: int) -> int:
     return step
 
 
-@kernel
+@part
 def relink(fold: Fold, u: int, v: int, new: IntArray) -> None:
     """Put cells `new` between joints u and v in place of those there."""
     cell = fold.notes[NEXT, u]
@@ -240,7 +240,7 @@ def relink(fold: Fold, u: int, v: int, new: IntArray) -> None:
     _link(fold, u, v, new)
 
 
-@kernel
+@part
 def _link(fold: Fold, u: int, v: int, new: IntArray) -> None:
     step = label_step(fold, RANK, u, v, len(new))
     joint = u
@@ -256,7 +256,7 @@ def _link(fold: Fold, u: int, v: int, new: IntArray) -> None:
     put(fold, COUNT, JOINTS, fold.notes[COUNT, JOINTS] + len(new))
 
 
-@kernel
+@part
 def cancel_events(fold: Fold, first: int, last: int) -> None:
     """Take the events strictly between two off the plan; their neighbours are not joined."""
     event = fold.notes[AFTER, first]
@@ -270,7 +270,7 @@ def cancel_events(fold: Fold, first: int, last: int) -> None:
         event = following
 
 
-@kernel
+@part
 def note_event(fold: Fold, event: int, before: int, time: int, end: int) -> None:
     """Put an event behind another."""
     put(fold, AFTER, before, event)
@@ -279,7 +279,7 @@ def note_event(fold: Fold, event: int, before: int, time: int, end: int) -> None
     put(fold, END, event, end)
 
 
-@kernel
+@part
 def note_states(
     fold: Fold, event: int, at: int, rod: int, former: int, other: int, other_rod: int
 ) -> None:
@@ -291,7 +291,7 @@ def note_states(
     put(fold, OTHER_ROD, event, other_rod)
 
 
-@kernel
+@part
 def new_slot(fold: Fold) -> int:
     """The number of a swing to be."""
     spare = fold.notes[COUNT, SPARE]

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .._jit import kernel
+from .._jit import kernel, part
 from ..grid import IntArray
 from ..motion._chain import ray_meets_quadrant, rays_meet
 from ._fold import (
@@ -95,7 +95,7 @@ def replace(fold: Fold, u: int, v: int, new: IntArray) -> bool:
     return True
 
 
-@kernel
+@part
 def _has_room(fold: Fold, span: Span, u: int, v: int, n_new: int, n_events: int) -> bool:
     n_old, joint = 0, fold.notes[NEXT, u]
     while joint != v:
@@ -109,7 +109,7 @@ def _has_room(fold: Fold, span: Span, u: int, v: int, n_new: int, n_events: int)
     return path_step > 0 and label_step(fold, TIME, span.first, span.last, n_events) > 0
 
 
-@kernel
+@part
 def _find_span(fold: Fold, u: int, v: int) -> Span:
     """The span between two joints, or beyond one of them."""
     notes, root = fold.notes, root_of(fold)
@@ -150,7 +150,7 @@ def _find_span(fold: Fold, u: int, v: int) -> Span:
     return Span(end, outer, inner, event, last, rod, goal, other, other_rod, low, high)
 
 
-@kernel
+@part
 def _open_span(fold: Fold, u: int, v: int) -> Span:
     """The span of all that comes after the ends have reached u and v."""
     notes, root = fold.notes, root_of(fold)
@@ -199,7 +199,7 @@ def swept_before(fold: Fold, cell: int, limit: int) -> bool:
     return False
 
 
-@kernel
+@part
 def _in_quadrant(p: IntArray, q: IntArray, d: int, f: int) -> bool:
     """Whether p lies in the closed quadrant at q between directions d and f."""
     normal = 3 - d % 3 - f % 3
@@ -243,7 +243,7 @@ def _plan_piece(fold: Fold, span: Span, piece: Longs) -> Longs:
     return _route(parent, goal)
 
 
-@kernel
+@part
 def _peel_on(
     fold: Fold,
     span: Span,
@@ -304,7 +304,7 @@ def _route(parent: IntArray, goal: int) -> Longs:
     return route
 
 
-@kernel
+@part
 def _still_folded(fold: Fold, span: Span, cell: int, place: int) -> bool:
     """Whether `cell` holds a joint that is folded while the end is before `place`."""
     if fold.piece[cell] >= 0:
@@ -312,7 +312,7 @@ def _still_folded(fold: Fold, span: Span, cell: int, place: int) -> bool:
     return span.low <= fold.notes[RANK, cell] <= span.high
 
 
-@kernel
+@part
 def _clear_ray(fold: Fold, span: Span, start: int, d: int, place: int) -> bool:
     grid = fold.grid
     c = start + grid.offset[d]
@@ -325,7 +325,7 @@ def _clear_ray(fold: Fold, span: Span, start: int, d: int, place: int) -> bool:
     return not rays_meet(grid.xyz[span.other], span.other_rod, grid.xyz[start], d)
 
 
-@kernel
+@part
 def _clear_quadrant(fold: Fold, span: Span, start: int, d: int, f: int, place: int) -> bool:
     grid = fold.grid
     row = start
@@ -341,7 +341,7 @@ def _clear_quadrant(fold: Fold, span: Span, start: int, d: int, f: int, place: i
     return not ray_meets_quadrant(grid.xyz[span.other], span.other_rod, grid.xyz[start], d, f)
 
 
-@kernel
+@part
 def _add_events(fold: Fold, span: Span, piece: Longs, route: Longs) -> None:
     """Put the events of a route into the gap of a span."""
     begin = 0 if span.rod < 0 else 1

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .._jit import kernel
-from ._sweeps import Ints
+from .._jit import part
+from ._sweeps import Ints, write
 
 Point = tuple[int, int, int]
 
@@ -33,13 +33,12 @@ class Chain(NamedTuple):
     debt: Ints  # (2,) comparisons made with resting runs of a side since some last entered
 
 
-@kernel
 def new_chain(pose: Ints) -> Chain:
-    """The chain in a lattice pose, which it takes over; its body is joint 0 alone."""
+    """The chain in a lattice pose, which it takes over; all of it is the body, see `start`."""
     size = 8
     while size < 4 * len(pose):
         size *= 2
-    chain = Chain(
+    return Chain(
         pose,
         np.array([0, len(pose) - 1, 0]),
         np.zeros((2, 3), np.int64),
@@ -49,13 +48,16 @@ def new_chain(pose: Ints) -> Chain:
         np.zeros(2, np.int64),
         np.zeros(2, np.int64),
     )
-    for side in range(2):
-        release(chain, side, chain.body[0])
+
+
+@part
+def start(chain: Chain) -> None:
+    """Make joint 0 alone the body of a new chain."""
+    release(chain, 1, 0)
     _restart(chain)
-    return chain
 
 
-@kernel
+@part
 def lay_out(chain: Chain) -> None:
     """Bring `pose` up to date for the joints outside the body."""
     for side in range(2):
@@ -65,7 +67,7 @@ def lay_out(chain: Chain) -> None:
                 _put(chain, run, t)
 
 
-@kernel
+@part
 def _put(chain: Chain, run: Ints, t: int) -> int:
     """Bring `pose` up to date for the joint t bars along a run, and name it."""
     n_bars = abs(run[FAR] - run[NEAR])
@@ -76,7 +78,7 @@ def _put(chain: Chain, run: Ints, t: int) -> int:
     return int(joint)
 
 
-@kernel
+@part
 def position(chain: Chain, joint: int) -> Point:
     """Where a joint is."""
     if not chain.body[0] <= joint <= chain.body[1]:
@@ -87,7 +89,7 @@ def position(chain: Chain, joint: int) -> Point:
     return p[0], p[1], p[2]
 
 
-@kernel
+@part
 def _run_with(chain: Chain, side: int, joint: int) -> int:
     """The run outside the body that holds a joint, at its far end if it is at two."""
     k = chain.n_runs[side] - 1
@@ -96,7 +98,7 @@ def _run_with(chain: Chain, side: int, joint: int) -> int:
     return int(k)
 
 
-@kernel
+@part
 def split(chain: Chain, side: int, joint: int) -> int:
     """Part the run that holds a joint in two there; the number of runs beyond the joint."""
     runs, n = chain.runs[side], chain.n_runs[side]
@@ -107,7 +109,7 @@ def split(chain: Chain, side: int, joint: int) -> int:
         return k
     p = position(chain, joint)
     for row in range(n, k, -1):
-        runs[row] = runs[row - 1]
+        write(runs[row], runs[row - 1])
     runs[k, NEAR] = runs[k + 1, FAR] = joint
     for axis in range(3):
         runs[k, NEAR_X + axis] = runs[k + 1, FAR_X + axis] = p[axis]
@@ -115,20 +117,20 @@ def split(chain: Chain, side: int, joint: int) -> int:
     return k + 1
 
 
-@kernel
+@part
 def mend(chain: Chain, side: int, k: int) -> None:
     """Make one of the runs k and k - 1, if there are both and they lie on one line."""
     runs, n = chain.runs[side], chain.n_runs[side]
     if not 1 <= k < n or not _aligned(runs[k], runs[k - 1]):
         return
     runs[k - 1, NEAR] = runs[k, NEAR]
-    runs[k - 1, NEAR_X:FAR_X] = runs[k, NEAR_X:FAR_X]
+    write(runs[k - 1, NEAR_X:FAR_X], runs[k, NEAR_X:FAR_X])
     for row in range(k, n - 1):
-        runs[row] = runs[row + 1]
+        write(runs[row], runs[row + 1])
     chain.n_runs[side] -= 1
 
 
-@kernel
+@part
 def _aligned(a: Ints, b: Ints) -> bool:
     """Whether two runs have one direction."""
     for axis in range(3):
@@ -138,7 +140,7 @@ def _aligned(a: Ints, b: Ints) -> bool:
     return True
 
 
-@kernel
+@part
 def release(chain: Chain, side: int, joint: int) -> None:
     """Let joints leave the body, until `joint` is its last on this side."""
     inward = 1 - 2 * side
@@ -151,19 +153,19 @@ def release(chain: Chain, side: int, joint: int) -> None:
         _box(chain)
 
 
-@kernel
+@part
 def _push(chain: Chain, side: int, near: int, far: int, p: Ints, q: Ints) -> None:
     """Put a run from p to q on top of a side's stack."""
     k = chain.n_runs[side]
     run = chain.runs[side, k]
     run[NEAR], run[FAR] = near, far
-    run[NEAR_X:FAR_X] = p
-    run[FAR_X:] = q
+    write(run[NEAR_X:FAR_X], p)
+    write(run[FAR_X:], q)
     chain.n_runs[side] += 1
     mend(chain, side, k)
 
 
-@kernel
+@part
 def settle(chain: Chain, side: int, joint: int) -> None:
     """Make a joint outside the body, on this side, the whole body; all other bars are runs."""
     other = 1 - side
@@ -174,11 +176,11 @@ def settle(chain: Chain, side: int, joint: int) -> None:
         _push(chain, other, run[FAR], run[NEAR], run[FAR_X:], run[NEAR_X:FAR_X])
     position(chain, joint)
     chain.n_runs[side] = n_beyond
-    chain.body[:2] = joint
+    chain.body[0] = chain.body[1] = joint
     _restart(chain)
 
 
-@kernel
+@part
 def enter(chain: Chain, side: int, keep: int) -> None:
     """Let runs of a side enter the body, those next to it first, until `keep` are left."""
     while chain.n_runs[side] > keep:
@@ -192,7 +194,7 @@ def enter(chain: Chain, side: int, keep: int) -> None:
     chain.debt[side] = 0
 
 
-@kernel
+@part
 def _restart(chain: Chain) -> None:
     """Find the body, as it is, by place."""
     _box(chain)
@@ -200,23 +202,24 @@ def _restart(chain: Chain) -> None:
         insert(chain, joint)
 
 
-@kernel
+@part
 def _box(chain: Chain) -> None:
     first, last = chain.body[0], chain.body[1]
     chain.body[2] = last - first + 1
-    chain.box[0] = chain.box[1] = chain.pose[first]
+    for axis in range(3):
+        chain.box[0, axis] = chain.box[1, axis] = chain.pose[first, axis]
     for joint in range(first, last + 1):
         _widen(chain, joint)
 
 
-@kernel
+@part
 def _widen(chain: Chain, joint: int) -> None:
     for axis in range(3):
         chain.box[0, axis] = min(chain.box[0, axis], chain.pose[joint, axis])
         chain.box[1, axis] = max(chain.box[1, axis], chain.pose[joint, axis])
 
 
-@kernel
+@part
 def insert(chain: Chain, joint: int) -> None:
     """Enter a joint of the body in the box and in the table.
 
@@ -225,13 +228,14 @@ def insert(chain: Chain, joint: int) -> None:
     _widen(chain, joint)
     _take_slot(chain, joint)
     if 2 * chain.entered[0] > len(chain.table):
-        chain.table[:] = -1
+        for slot in range(len(chain.table)):
+            chain.table[slot] = -1
         chain.entered[0] = 0
         for other in range(chain.body[0], chain.body[1] + 1):
             _take_slot(chain, other)
 
 
-@kernel
+@part
 def _take_slot(chain: Chain, joint: int) -> None:
     p = chain.pose[joint]
     slot = _slot(chain, p[0], p[1], p[2])
@@ -243,7 +247,7 @@ def _take_slot(chain: Chain, joint: int) -> None:
     chain.entered[0] += 1
 
 
-@kernel
+@part
 def find(chain: Chain, x: int, y: int, z: int) -> int:
     """The joint of the body at a lattice point, -1 if there is none."""
     slot = _slot(chain, x, y, z)
@@ -257,7 +261,7 @@ def find(chain: Chain, x: int, y: int, z: int) -> int:
     return -1
 
 
-@kernel
+@part
 def _slot(chain: Chain, x: int, y: int, z: int) -> int:
     key = x * _X + y * _Y + z * _Z
     return (key ^ (key >> 31)) & (len(chain.table) - 1)

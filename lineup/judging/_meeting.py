@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .._jit import kernel
+from .._jit import part
 from ._chain import FAR, FAR_X, NEAR, NEAR_X, Chain, Point, find
 from ._sweeps import (
     FIRST,
@@ -36,7 +36,8 @@ class Court(NamedTuple):
     extent: Floats  # (2, 3) lowest and highest positions met
     moving: Ints  # (P, 9)
     resting: Ints  # (P, 9)
-    bar: Ints  # (9,)
+    bars: Ints  # (2, 9)
+    place: Ints  # (3,)
 
 
 class Frame(NamedTuple):
@@ -60,7 +61,7 @@ class Moving(NamedTuple):
     end: int
 
 
-@kernel
+@part
 def see_rest(court: Court, moving: Moving, frame: Frame, hinges: tuple[int, int]) -> int:
     """List the runs outside the body that rest; their number."""
     chain, count = court.chain, 0
@@ -71,7 +72,7 @@ def see_rest(court: Court, moving: Moving, frame: Frame, hinges: tuple[int, int]
     return count
 
 
-@kernel
+@part
 def see_moving(court: Court, moving: Moving, frame: Frame, hinges: tuple[int, int]) -> int:
     """List the runs that move, the one at the hinge first; their number."""
     if moving.side == IN_BODY:
@@ -82,28 +83,36 @@ def see_moving(court: Court, moving: Moving, frame: Frame, hinges: tuple[int, in
     return count
 
 
-@kernel
+@part
 def _see(run: Ints, frame: Frame, hinges: tuple[int, int], out: Ints, count: int) -> int:
     """Write a run outside the body, as seen in a frame, from row `count` on; the new count."""
     near, far = run[NEAR_X:FAR_X], run[FAR_X:]
     return _place(run[NEAR], run[FAR], near, far, frame, hinges, out, count)
 
 
-@kernel
+@part
 def _see_limb(court: Court, frame: Frame, hinges: tuple[int, int]) -> int:
     """List the straight runs of the body between two of its joints; their number."""
     pose, count = court.chain.pose, 0
     start, other = hinges
     while start < other:
         stop = start + 1
-        while stop < other and (pose[stop + 1] - pose[stop] == pose[stop] - pose[stop - 1]).all():
+        while stop < other and _goes_straight(pose, stop):
             stop += 1
         count = _place(start, stop, pose[start], pose[stop], frame, hinges, court.moving, count)
         start = stop
     return count
 
 
-@kernel
+@part
+def _goes_straight(pose: Ints, joint: int) -> bool:
+    for axis in range(3):
+        if pose[joint + 1, axis] + pose[joint - 1, axis] != 2 * pose[joint, axis]:
+            return False
+    return True
+
+
+@part
 def _place(
     joint: int,
     other: int,
@@ -131,7 +140,7 @@ def _place(
     return count + 1
 
 
-@kernel
+@part
 def _place_bars(
     joint: int, other: int, p: Ints, q: Ints, begin: int, end: int, frame: Frame, out: Ints
 ) -> None:
@@ -151,22 +160,23 @@ def _place_bars(
             out[GROWS] = step if v > u else -step
 
 
-@kernel
+@part
 def meet_rest(
     court: Court, runs: Ints, n_resting: int, turning: bool, limb: tuple[int, int], frame: Frame
 ) -> None:
     """Compare moving runs with all that rests: all of the body but a limb, and runs outside it."""
     compare(runs, court.resting[:n_resting], turning, court.nearest)
     n_bars = court.chain.body[1] - court.chain.body[0]
-    for run in runs:
+    for k in range(len(runs)):
+        run = runs[k]
         box = swept_box(run, turning)
         _widen(court.extent, box, frame)
         if n_bars == 0:
             continue
         lo, hi = _cells(court.chain, run, box, frame)
         n_cells = 1
-        for k in range(3):
-            n_cells *= max(0, hi[k] - lo[k] + 1)
+        for axis in range(3):
+            n_cells *= max(0, hi[axis] - lo[axis] + 1)
         if n_cells < n_bars:
             _look_up(court, run, turning, limb, frame, lo, hi)
         else:
@@ -174,18 +184,18 @@ def meet_rest(
                 _meet_bar(court, run, bar, turning, limb, frame)
 
 
-@kernel
+@part
 def _meet_bar(
     court: Court, run: Ints, bar: int, turning: bool, limb: tuple[int, int], frame: Frame
 ) -> None:
     """Compare a moving run with one bar, if that is a bar of the body that rests."""
     pose, body = court.chain.pose, court.chain.body
     if body[0] <= bar < body[1] and not limb[0] <= bar < limb[1]:
-        _place_bars(bar, bar + 1, pose[bar], pose[bar + 1], 0, 1, frame, court.bar)
-        meet(run, court.bar, turning, court.nearest)
+        _place_bars(bar, bar + 1, pose[bar], pose[bar + 1], 0, 1, frame, court.bars[0])
+        meet(run, court.bars[0], turning, court.nearest)
 
 
-@kernel
+@part
 def _cells(chain: Chain, run: Ints, box: Box, frame: Frame) -> tuple[Point, Point]:
     """Lowest and highest (x, y, h) at which a joint of the body may be near a run."""
     a = to_frame(chain.box[0], frame)
@@ -203,7 +213,7 @@ def _cells(chain: Chain, run: Ints, box: Box, frame: Frame) -> tuple[Point, Poin
     return lo, hi
 
 
-@kernel
+@part
 def to_frame(p: Ints, frame: Frame) -> Point:
     return (
         frame.sign_x * (p[frame.axis_x] - frame.x0),
@@ -212,7 +222,7 @@ def to_frame(p: Ints, frame: Frame) -> Point:
     )
 
 
-@kernel
+@part
 def _look_up(
     court: Court,
     run: Ints,
@@ -227,7 +237,7 @@ def _look_up(
     if turning:
         nearest, farthest = max(0.0, inner(run) - _BAR_REACH), outer(run) + _BAR_REACH
     nearest, farthest = nearest * nearest, farthest * farthest
-    at = np.empty(3, np.int64)
+    at = court.place
     for x in range(lo[0], hi[0] + 1):
         at[frame.axis_x] = frame.x0 + frame.sign_x * x
         for y in range(lo[1], hi[1] + 1):
@@ -242,7 +252,7 @@ def _look_up(
                     _meet_bar(court, run, joint, turning, limb, frame)
 
 
-@kernel
+@part
 def _widen(extent: Floats, box: Box, frame: Frame) -> None:
     """Widen the extent of a motion by a box of a frame."""
     u, v = frame.x0 + frame.sign_x * box[0], frame.x0 + frame.sign_x * box[2]

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._jit import kernel
+from .._jit import kernel, part
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -37,7 +37,14 @@ class Nearest(NamedTuple):
     turning: Ints  # (1,) whether it turned (1) or slid (0)
 
 
-@kernel
+@part
+def write(out: Ints, numbers: Ints) -> None:
+    """Write numbers one by one, which compiles in no time, as an assignment to a slice does not."""
+    for k in range(len(out)):
+        out[k] = numbers[k]
+
+
+@part
 def compare(moving: Ints, resting: Ints, turning: bool, nearest: Nearest) -> None:
     """Take note of how near any of the runs `moving` comes to any of the runs `resting`."""
     for i in range(len(moving)):
@@ -45,7 +52,7 @@ def compare(moving: Ints, resting: Ints, turning: bool, nearest: Nearest) -> Non
             meet(moving[i], resting[k], turning, nearest)
 
 
-@kernel
+@part
 def meet(m: Ints, r: Ints, turning: bool, nearest: Nearest) -> None:
     """Take note of how near run m comes to run r while it turns by a quarter, or slides."""
     if not _share_a_height(m, r):
@@ -55,38 +62,39 @@ def meet(m: Ints, r: Ints, turning: bool, nearest: Nearest) -> None:
     distance = _distance(m, r, turning)
     if distance < nearest.distance[0]:
         nearest.distance[0] = distance
-        nearest.runs[0] = m
-        nearest.runs[1] = r
+        write(nearest.runs[0], m)
+        write(nearest.runs[1], r)
         nearest.turning[0] = turning
 
 
-@kernel
+@part
 def _share_a_height(m: Ints, r: Ints) -> bool:
     return bool(m[HLO] <= r[HHI] and r[HLO] <= m[HHI])
 
 
-@kernel
-def nearest_bars(nearest: Nearest) -> tuple[int, int]:
-    """The two bars, in the nearest two runs, that come as near as that; the lower one first."""
-    m, r = nearest.runs[0].copy(), nearest.runs[1].copy()
+@part
+def nearest_bars(nearest: Nearest, bars: Ints) -> tuple[int, int]:
+    """The two bars, in the nearest two runs, that come as near as that; the lower one first.
+
+    `bars` is room for two runs.
+    """
+    m, r, one, other = nearest.runs[0], nearest.runs[1], bars[0], bars[1]
     turning, enough = bool(nearest.turning[0]), nearest.distance[0] + _ROUNDING
-    one = m.copy()
     for bar in range(m[FIRST], m[LAST] + 1):
         _narrow(m, bar, one)
         if _share_a_height(one, r) and _distance(one, r, turning) <= enough:
             break
-    m[:] = one
     for bar in range(r[FIRST], r[LAST] + 1):
-        _narrow(r, bar, one)
-        if _share_a_height(m, one) and _distance(m, one, turning) <= enough:
+        _narrow(r, bar, other)
+        if _share_a_height(one, other) and _distance(one, other, turning) <= enough:
             break
-    return min(m[FIRST], one[FIRST]), max(m[FIRST], one[FIRST])
+    return min(one[FIRST], other[FIRST]), max(one[FIRST], other[FIRST])
 
 
-@kernel
+@part
 def _narrow(run: Ints, bar: int, out: Ints) -> None:
     """One bar of a run, as a run."""
-    out[:] = run
+    write(out, run)
     out[FIRST] = out[LAST] = bar
     k = bar - run[FIRST] if run[GROWS] > 0 else run[LAST] - bar
     for axis in range(3):
@@ -95,7 +103,7 @@ def _narrow(run: Ints, bar: int, out: Ints) -> None:
             out[axis + 3] = run[axis] + k + 1
 
 
-@kernel
+@part
 def swept_box(run: Ints, turning: bool) -> Box:
     """What a run sweeps in the plane lies in this box and touches each of its sides."""
     if not turning:
@@ -104,7 +112,7 @@ def swept_box(run: Ints, turning: bool) -> Box:
     return min(a[0], b[0]), min(a[1], b[1]), max(a[2], b[2]), max(a[3], b[3])
 
 
-@kernel
+@part
 def _arc_box(x: int, y: int) -> Box:
     """The box of the quarter arc, counter-clockwise from (x, y) to (-y, x)."""
     radius = sqrt(float(x * x + y * y))
@@ -116,7 +124,7 @@ def _arc_box(x: int, y: int) -> Box:
     )
 
 
-@kernel
+@part
 def _distance(m: Ints, r: Ints, turning: bool) -> float:
     return turn_distance(m, r) if turning else slide_distance(m, r)
 
@@ -154,13 +162,13 @@ def turn_distance(m: Ints, r: Ints) -> float:
     return best
 
 
-@kernel
+@part
 def inner(run: Ints) -> float:
     """Distance from the origin of the frame's plane to a run."""
     return _to_box(0, 0, run[XLO], run[YLO], run[XHI], run[YHI])
 
 
-@kernel
+@part
 def outer(run: Ints) -> float:
     """Largest distance from the origin of the frame's plane to a run."""
     x = max(abs(run[XLO]), abs(run[XHI]))
@@ -168,13 +176,13 @@ def outer(run: Ints) -> float:
     return sqrt(float(x * x + y * y))
 
 
-@kernel
+@part
 def _to_box(x: int, y: int, xlo: int, ylo: int, xhi: int, yhi: int) -> float:
     gap_x, gap_y = max(0, xlo - x, x - xhi), max(0, ylo - y, y - yhi)
     return sqrt(float(gap_x * gap_x + gap_y * gap_y))
 
 
-@kernel
+@part
 def _arc_to_box(px: int, py: int, xlo: int, ylo: int, xhi: int, yhi: int) -> float:
     """Distance from the quarter arc, counter-clockwise from (px, py), to an axis-parallel box.
 
@@ -199,7 +207,7 @@ def _arc_to_box(px: int, py: int, xlo: int, ylo: int, xhi: int, yhi: int) -> flo
     return best
 
 
-@kernel
+@part
 def _meets_edge(px: int, py: int, x: int, ylo: int, yhi: int) -> bool:
     """Whether the quarter arc from (px, py) meets the edge at x from ylo to yhi."""
     height_2 = px * px + py * py - x * x

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .._jit import kernel
+from .._jit import kernel, part
 from ..kinematics import Move
 from ._chain import (
     ENTRY_COST,
@@ -26,6 +26,7 @@ from ._chain import (
     release,
     settle,
     split,
+    start,
 )
 from ._meeting import (
     IN_BODY,
@@ -66,21 +67,28 @@ class Found(NamedTuple):
     bent: tuple[int, int]  # the move and the joint that bent so far, -1 if none did
 
 
-@kernel
 def carry_out(pose: Ints, moves: Ints, first: int, limits: Limits, extent: Floats) -> Found:
     """Judge the moves from row `first` on, up to a fault or a move that is none of `KINDS`.
 
     `pose` is moved along, and `extent`, (2, 3) the lowest and highest positions met, widened.
     """
-    n, chain = len(pose), new_chain(pose)
+    n = len(pose)
     court = Court(
-        chain,
+        new_chain(pose),
         Nearest(np.ones(1), np.empty((2, 9), np.int64), np.zeros(1, np.int64)),
         extent,
         np.empty((n, 9), np.int64),
         np.empty((n, 9), np.int64),
-        np.empty(9, np.int64),
+        np.empty((2, 9), np.int64),
+        np.empty(3, np.int64),
     )
+    return _carry_out(court, moves, first, limits)
+
+
+@kernel
+def _carry_out(court: Court, moves: Ints, first: int, limits: Limits) -> Found:
+    chain = court.chain
+    start(chain)
     corners = max(0, chain.n_runs[1] - 1)
     where, fault, straight = first, FINE, False
     near, bend_deg, bent = (-1, -1, -1), 0.0, (-1, -1)
@@ -88,7 +96,7 @@ def carry_out(pose: Ints, moves: Ints, first: int, limits: Limits, extent: Float
         clearance = court.nearest.distance[0]
         fault, worst, joint, gained = _judge(court, limits, moves[where])
         if court.nearest.distance[0] < clearance:
-            bar_a, bar_b = nearest_bars(court.nearest)
+            bar_a, bar_b = nearest_bars(court.nearest, court.bars)
             near = (where, bar_a, bar_b)
         if worst > bend_deg:
             bend_deg, bent = worst, (where, joint)
@@ -100,7 +108,7 @@ def carry_out(pose: Ints, moves: Ints, first: int, limits: Limits, extent: Float
     return Found(where, fault, straight, court.nearest.distance[0], near, bend_deg, bent)
 
 
-@kernel
+@part
 def _judge(court: Court, limits: Limits, move: Ints) -> tuple[int, float, int, int]:
     """Make one move: the fault, its largest bend, the joint that has it, and the corners gained."""
     chain = court.chain
@@ -133,7 +141,7 @@ def _judge(court: Court, limits: Limits, move: Ints) -> tuple[int, float, int, i
     return FINE, after, joint_after, gained
 
 
-@kernel
+@part
 def _bend_at(chain: Chain, joint: int) -> float:
     """Bend of a lattice pose at one joint, 0, 90 or 180 degrees; 0 at the two ends."""
     if joint < 1 or joint > len(chain.pose) - 2:
@@ -145,7 +153,7 @@ def _bend_at(chain: Chain, joint: int) -> float:
     return 90.0 * (1 - cosine)
 
 
-@kernel
+@part
 def _bends(chain: Chain, joint: int, second: int) -> tuple[float, int]:
     """The larger bend at two joints, and which of them has it.
 
@@ -156,7 +164,7 @@ def _bends(chain: Chain, joint: int, second: int) -> tuple[float, int]:
     return (b, second) if b > a else (a, joint)
 
 
-@kernel
+@part
 def _corners(chain: Chain, joint: int, second: int) -> int:
     count = int(_bend_at(chain, joint) > 0)
     if second != joint:
@@ -164,7 +172,7 @@ def _corners(chain: Chain, joint: int, second: int) -> int:
     return count
 
 
-@kernel
+@part
 def _malformed(p: Point, q: Point, kind: int, joint: int, other: int, value: int) -> int:
     """`FINE`, or what makes this no move of joints at p and q; one that moves nothing is none."""
     if kind == _DOOR:
@@ -182,7 +190,7 @@ def _malformed(p: Point, q: Point, kind: int, joint: int, other: int, value: int
     return FINE
 
 
-@kernel
+@part
 def _frame(p: Point, q: Point, kind: int, value: int) -> Frame:
     """The frame of a move by joints at p and q, with its origin at p."""
     axis = 0
@@ -200,7 +208,7 @@ def _frame(p: Point, q: Point, kind: int, value: int) -> Frame:
     return Frame(p[x], p[y], p[h], x, y, h, (1 if e < 3 else -1), (1 if d < 3 else -1))
 
 
-@kernel
+@part
 def _part(chain: Chain, kind: int, joint: int, other: int) -> Moving:
     """Part what moves from what rests: afterwards no moving run is in the body."""
     first, last = chain.body[0], chain.body[1]
@@ -222,7 +230,7 @@ def _part(chain: Chain, kind: int, joint: int, other: int) -> Moving:
     return Moving(side, begin if kind == _DOOR else 0, end)
 
 
-@kernel
+@part
 def _enter_between(chain: Chain, side: int, near: int) -> None:
     """Let what rests between the body and joint `near` enter the body, once that is worth it.
 
@@ -238,7 +246,7 @@ def _enter_between(chain: Chain, side: int, near: int) -> None:
             enter(chain, side, split(chain, side, near))
 
 
-@kernel
+@part
 def _enter_opposite(chain: Chain, side: int) -> None:
     """Let all runs of a side that rests, but the last, enter the body, once that is worth it."""
     if chain.n_runs[side] > 1:
@@ -247,7 +255,7 @@ def _enter_opposite(chain: Chain, side: int) -> None:
             enter(chain, side, 1)
 
 
-@kernel
+@part
 def _sweep(court: Court, move: Ints, moving: Moving, frame: Frame) -> None:
     """Take note of how near the chain comes to itself during a move, and of how far it reaches."""
     kind, joint, other, _ = move
@@ -259,14 +267,14 @@ def _sweep(court: Court, move: Ints, moving: Moving, frame: Frame) -> None:
     for slides in range(2):
         meet_rest(court, carried if slides else turning, n_resting, slides == 0, limb, frame)
     # Seen from the carried bars the turning bar swings about `other`, by the same quarter.
-    for run in court.moving[:n]:
-        run[XLO] -= 1
-        run[XHI] -= 1
+    for k in range(n):
+        court.moving[k, XLO] -= 1
+        court.moving[k, XHI] -= 1
     compare(turning, carried, True, court.nearest)
     _charge(court.chain, moving, n)
 
 
-@kernel
+@part
 def _charge(chain: Chain, moving: Moving, n_moving: int) -> None:
     """Count the comparisons with resting runs that would be none, were these in the body."""
     for side in range(2):
@@ -274,7 +282,7 @@ def _charge(chain: Chain, moving: Moving, n_moving: int) -> None:
         chain.debt[side] += n_moving * (n - moving.end if side == moving.side else n)
 
 
-@kernel
+@part
 def _carry(chain: Chain, move: Ints, moving: Moving, frame: Frame) -> None:
     """Bring what a move carries to where it is at its end."""
     kind, joint, other, _ = move
@@ -300,7 +308,7 @@ def _carry(chain: Chain, move: Ints, moving: Moving, frame: Frame) -> None:
     mend(chain, side, begin)
 
 
-@kernel
+@part
 def _turn(p: Ints, frame: Frame) -> None:
     """Turn a position by a quarter about the origin of a frame."""
     x, y, _ = to_frame(p, frame)
@@ -308,7 +316,7 @@ def _turn(p: Ints, frame: Frame) -> None:
     p[frame.axis_y] = frame.y0 + frame.sign_y * x
 
 
-@kernel
+@part
 def _slide(p: Ints, frame: Frame) -> None:
     """Carry a position along with the end of a bar that turns by a quarter."""
     p[frame.axis_x] -= frame.sign_x

@@ -1,11 +1,13 @@
 """The judge of motions: whether the chain keeps clear of itself at every instant (Section 6)."""
 
 from dataclasses import replace
+from types import NoneType
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import grid
+from .._record import of_kind
 from ..joints import JOINTS, slot_violations
 from ..kinematics import Move
 from ..solid import Certificate, Motion, Obstacles
@@ -90,7 +92,7 @@ def certify(
     ------
     ValueError
         If `diameter` is not positive, `max_bend_deg` is not in (0, 180], `within` is not three
-        positive numbers, or `joints` is none of those.
+        positive numbers, `joints` is none of those, or `motion` is no Motion.
 
     Examples
     --------
@@ -102,10 +104,9 @@ def certify(
     >>> verdict.reason, verdict.most_bent, verdict.extent
     ('certified', (-1, 1), (4.0, 3.0, 1.0))
     """
-    if not (np.isfinite(diameter) and diameter > 0):
-        raise ValueError(f"diameter must be a positive number of voxels, got {diameter}")
-    if not 0 < max_bend_deg <= 180:
-        raise ValueError(f"max_bend_deg must be above 0 and at most 180, got {max_bend_deg}")
+    of_kind(motion, Motion)
+    of_kind(obstacles, Obstacles, NoneType)
+    check_limits(diameter, max_bend_deg)
     box = np.array([np.inf] * 3 if within is None else within, np.float64)
     if box.shape != (3,) or not (box > 0).all():
         raise ValueError(f"within must be three positive numbers of voxels, got {within}")
@@ -113,6 +114,14 @@ def certify(
         raise ValueError(f"unknown joints {joints!r}; known: {', '.join(JOINTS)}")
     verdict = _Trial(motion, diameter, max_bend_deg, box, obstacles).verdict()
     return verdict if joints == "free" else _slotted(motion, verdict)
+
+
+def check_limits(diameter: float | None, max_bend_deg: float | None) -> None:
+    """Raise a ValueError if no motion can be judged at this diameter or this bend."""
+    if diameter is not None and not (np.isfinite(diameter) and diameter > 0):
+        raise ValueError(f"diameter must be a positive number of voxels, got {diameter}")
+    if max_bend_deg is not None and not 0 < max_bend_deg <= 180:
+        raise ValueError(f"max_bend_deg must be above 0 and at most 180, got {max_bend_deg}")
 
 
 def _slotted(motion: Motion, verdict: Certificate) -> Certificate:
@@ -251,7 +260,7 @@ class _Trial:
 
     def _turns(self) -> Certificate | None:
         """Peels, swings and doors up to the next move of another kind."""
-        moves, first = self.motion.moves.astype(np.int64), self.checked
+        moves, first = self.motion.moves.astype(np.int64, order="C"), self.checked
         limits = _turns.Limits(self.diameter, self.max_bend_deg, self.within - 1 + _ROUNDING)
         found = _turns.carry_out(self.pose, moves, first, limits, self.box)
         where = found.where
@@ -289,8 +298,10 @@ class _Trial:
         ahead = slice(None, None, 1 if head == last else -1)
         steps = grid.DIRECTIONS[values].astype(np.int64)
         hit = self._hit(self.pose[ahead], steps)
-        if hit:
-            steps = steps[: max(hit.vertex - last, 1)]
+        steps = steps[: max(hit.vertex - last, 1)] if hit else steps
+        n_held = self._n_held(self.pose[head] + steps.cumsum(axis=0))
+        if n_held + 1 < len(steps):
+            steps, hit = steps[: n_held + 1], None
         pulled = _pulls.carry_out(self.pose[ahead], steps, self.diameter, self.max_bend_deg)
         where = first + pulled.made
         heads = self.pose[head] + np.vstack([0 * steps[:1], steps[: pulled.made]]).cumsum(axis=0)
@@ -315,6 +326,13 @@ class _Trial:
                 where,
             )
         return self._refuse(f"bend of {pulled.bend_deg:g} degrees round a corner or U", where)
+
+    def _n_held(self, heads: NDArray[np.int64]) -> int:
+        """How many pulls stay in the box, of those that lead an end to these positions."""
+        low = np.minimum(self.box[0], np.minimum.accumulate(heads))
+        high = np.maximum(self.box[1], np.maximum.accumulate(heads))
+        out = (high - low + 1 > self.within + _ROUNDING).any(axis=1)
+        return int(out.argmax()) if out.any() else len(heads)
 
     def _hit(self, pose: NDArray[np.int64], steps: NDArray[np.int64]) -> _obstacles.Hit | None:
         """The first obstacle on the track of pulls by the last joint of a pose."""

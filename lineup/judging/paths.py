@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import grid
+from .._record import of_kind
 from ..solid import Certificate, VoxelPath, VoxelSolid
 from ._lattice import not_simple
 
@@ -38,6 +39,8 @@ def certify_path(path: VoxelPath, solid: VoxelSolid, u_free: bool = False) -> Ce
     >>> lu.certify_path(lu.VoxelPath(np.array([(0, 0, 0), (1, 0, 0)])), solid).reason
     'certified'
     """
+    of_kind(path, VoxelPath)
+    of_kind(solid, VoxelSolid)
     for check in (_path_fault, _inside_fault, _visits_fault, *([_u_fault] if u_free else [])):
         reason, where = check(path, solid)
         if reason:

@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from .._options import checked
+from .._record import of_kind
 from ..joints import slot_violations
 from ..solid import Motion, VoxelPath
 from .algorithm4 import energy
@@ -53,6 +54,7 @@ def unfold(path: VoxelPath, method: str = "auto", seed: int = 0, **options: Any)
     >>> lu.unfold(path).reason
     'straight: accordion, since the path is monotone'
     """
+    of_kind(path, VoxelPath)
     checked(MOTION_METHODS, method, options, "motion method")
     if len(path) < 2:
         raise ValueError(f"a motion needs a path of at least two voxels, got {len(path)}")

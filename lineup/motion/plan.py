@@ -144,6 +144,16 @@ def states_of(motion: Motion) -> IntArray:
 
 def _plan_behind(motion: Motion) -> IntArray:
     """The states (K, 4) of `states_of`; none if they would not be a peel plan of this motion."""
+    states = rod_states(motion)
+    grid, cells = path_grid(motion.start)
+    return states if len(states) and keeps_rules(grid, link(grid, cells), states) else states[:0]
+
+
+def rod_states(motion: Motion) -> IntArray:
+    """States (K, 4) of a motion to the line in which nothing but two straight end rods moves.
+
+    None, (0, 4), if the motion is not of this kind. That rods have room is not asked here.
+    """
     none = np.empty((0, 4), np.int32)
     if not (motion.straight and np.isin(motion.moves[:, 0], (Move.PEEL, Move.SWING)).all()):
         return none
@@ -169,11 +179,10 @@ def _plan_behind(motion: Motion) -> IntArray:
     if state[0] == state[1]:
         return none
     let_go(1, state[0] + 1)  # the rest is straight, so either end may take it
-    grid, cells = path_grid(motion.start)
     for plan in _ended(np.array(states, np.int32)):
         for joints in ("free", "slotted"):
             if np.array_equal(motion_of(motion.start, plan, joints).moves, motion.moves):
-                return plan if keeps_rules(grid, link(grid, cells), plan) else none
+                return plan
     return none
 
 

@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._jit import kernel
+from .._jit import kernel, part
 
 ONE_LINK = np.array([-1, 0, 1, -1, 2, -1, -1, -1, 3], dtype=np.int64)
 """Direction of the only bit set in a cell's links."""
@@ -104,7 +104,7 @@ def clear(board: Board) -> None:
             recount(board, cell)
 
 
-@kernel
+@part
 def recount(board: Board, cell: int) -> None:
     """Make the list of holes right about one cell."""
     at, n = board.hole_at[cell], board.n_holes[0]
@@ -120,13 +120,13 @@ def recount(board: Board, cell: int) -> None:
         board.n_holes[0] = n - 1
 
 
-@kernel
+@part
 def step(width: int, direction: int) -> int:
     """Difference of flat cell numbers along one direction 0..3."""
     return (1, width, -1, -width)[direction]
 
 
-@kernel
+@part
 def direction_of(width: int, difference: int) -> int:
     """Direction 0..3 of a step, the inverse of `step`."""
     if abs(difference) == 1:
@@ -134,7 +134,7 @@ def direction_of(width: int, difference: int) -> int:
     return 1 if difference == width else 3
 
 
-@kernel
+@part
 def earned(board: Board, cell: int, axis: int) -> float:
     """Take note of a changed link, from a cell along axis 0 or 1; the change in bonuses."""
     is_set = (board.links[cell] >> axis) & 1
@@ -153,7 +153,7 @@ def earned(board: Board, cell: int, axis: int) -> float:
     return change
 
 
-@kernel
+@part
 def set_link(board: Board, cell: int, direction: int) -> None:
     """Set a link that is not set."""
     other = cell + step(board.width, direction)
@@ -179,13 +179,13 @@ def sides(board: Board, square: int) -> int:
     )
 
 
-@kernel
+@part
 def corner(width: int, square: int, k: int) -> int:
     """Cell at corner k (mod 4) of a unit square."""
     return square + (0, 1, width + 1, width)[k & 3]
 
 
-@kernel
+@part
 def weight_change(board: Board, square: int, pattern: int) -> float:
     """Gain in covered weight of toggling a square; minus infinity if that is not allowed."""
     gain = 0.0
@@ -203,7 +203,7 @@ def weight_change(board: Board, square: int, pattern: int) -> float:
     return gain
 
 
-@kernel
+@part
 def follow(
     links: NDArray[np.uint8],
     width: int,

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._jit import kernel
+from .._jit import kernel, part
 from ._board import (
     UNKNOWN,
     Board,
@@ -49,7 +49,7 @@ has to be known.
 """
 
 
-@kernel
+@part
 def drawn(board: Board, squares: NDArray[np.int32], rng: np.random.Generator) -> int:
     """A random unit square, most often near a random hole; -1 if there is none at that place."""
     n_holes = board.n_holes[0]

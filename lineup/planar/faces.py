@@ -38,6 +38,8 @@ def connected_cells(mask: BoolArray) -> set[Cell]:
 
 def check_mask(mask: BoolArray) -> None:
     """Raise a ValueError if a mask is not (X, Y) bool."""
+    if not isinstance(mask, np.ndarray):
+        raise ValueError(f"mask must be an (X, Y) bool array, got {type(mask).__name__}")
     if mask.ndim != 2 or mask.dtype != bool:
         raise ValueError(f"mask must be (X, Y) bool, got {mask.dtype} of shape {mask.shape}")
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from .._record import record
+from .._record import of_kind, record
 from ..grid import FloatArray, IntArray
 from ..joints import JOINTS, slot_violations
 from ..solid import Folding, Motion
@@ -112,45 +112,69 @@ def export_robot(
     >>> bool(robot.survey.held_nm.max() >= robot.survey.moved_nm.max() > 0)
     True
     """
-    motion = folding.motion if isinstance(folding, Folding) else folding
+    motion = _checked(folding, joints)
     _check(gravity=gravity, move_seconds=move_seconds, actuator_share=actuator_share)
-    if joints not in JOINTS:
-        raise ValueError(f"unknown joints {joints!r}; known: {', '.join(JOINTS)}")
     bodies = bodies_of(pitch_mm, gap_mm, density)
     base = checked_base(base, len(motion.start) // 2)
-    if joints == "slotted":
-        _check_slots(motion)
     survey = surveyed(motion, bodies, base, gravity, substeps)
-    weight = bodies.block_kg * gravity * bodies.pitch_m
-    held, moved = (float(most.max()) / weight for most in (survey.held_nm, survey.moved_nm))
-    needs = comparison(
-        held, moved, bodies.pitch_m, gravity, actuator_share, move_seconds, actuators
-    )
     placed = Placed("robot", base, survey.origin, survey.frame, survey.trajectory.start_deg)
-    limit, speed = max(90.0, motion.max_bend_deg), 2 * 90 / move_seconds
-    texts = {
-        "robot.urdf": urdf(placed, bodies, limit, float(survey.held_nm.max()), speed),
-        **mjcf(placed, bodies, limit, gravity),
-        "trajectory.csv": _trajectory_table(survey),
-        "joints.csv": _joint_table(survey),
-    }
-    told = {
+    told: dict[str, Any] = {
         "joints": joints,
-        "limit_deg": limit,
+        "limit_deg": max(90.0, motion.max_bend_deg),
         "pitch_mm": pitch_mm,
         "gap_mm": gap_mm,
         "density": density,
         "gravity": gravity,
         "move_seconds": move_seconds,
         "actuator_share": actuator_share,
-        "largest_held_block_pitches": held,
-        "largest_moved_block_pitches": moved,
     }
+    needs = _needs(survey, bodies, told, actuators)
+    texts = _described(survey, bodies, placed, told)
     texts["robot.json"] = _summary(motion, survey, bodies, placed, told, needs)
     place = Path(folder)
     place.mkdir(parents=True, exist_ok=True)
     files = tuple(write_whole(place / name, text) for name, text in texts.items())
     return Robot(files, survey, bodies, base, needs)
+
+
+def _checked(folding: Folding | Motion, joints: str) -> Motion:
+    """The motion, once it is clear that the joints let it be made."""
+    of_kind(folding, Folding, Motion)
+    motion = folding.motion if isinstance(folding, Folding) else folding
+    if joints not in JOINTS:
+        raise ValueError(f"unknown joints {joints!r}; known: {', '.join(JOINTS)}")
+    rows = slot_violations(motion) if joints == "slotted" else ()
+    if len(rows):
+        move, bar = (int(k) for k in rows[0])
+        raise ValueError(
+            f"move {move} would twist bar {bar} in its slots; "
+            "lineup.fold(solid, joints='slotted') makes no such moves"
+        )
+    return motion
+
+
+def _needs(
+    survey: Survey, bodies: Bodies, told: dict[str, Any], actuators: Sequence[Actuator]
+) -> pd.DataFrame:
+    """What actuators give and what is needed; notes the arms that tell."""
+    weight = bodies.block_kg * told["gravity"] * bodies.pitch_m
+    arms = [float(most.max()) / weight for most in (survey.held_nm, survey.moved_nm)]
+    told["largest_held_block_pitches"], told["largest_moved_block_pitches"] = arms
+    share, seconds = told["actuator_share"], told["move_seconds"]
+    return comparison(*arms, bodies.pitch_m, told["gravity"], share, seconds, actuators)
+
+
+def _described(
+    survey: Survey, bodies: Bodies, placed: Placed, told: dict[str, Any]
+) -> dict[str, str]:
+    """The chain and its motion, by file name; speeds may be twice those of even moves."""
+    most, speed = float(survey.held_nm.max()), 2 * 90 / told["move_seconds"]
+    return {
+        "robot.urdf": urdf(placed, bodies, told["limit_deg"], most, speed),
+        **mjcf(placed, bodies, told["limit_deg"], told["gravity"]),
+        "trajectory.csv": _trajectory_table(survey),
+        "joints.csv": _joint_table(survey),
+    }
 
 
 def _check(**positive: float) -> None:
@@ -159,16 +183,6 @@ def _check(**positive: float) -> None:
             raise ValueError(f"{name} must be a positive number, got {value}")
     if positive["actuator_share"] > 1:
         raise ValueError(f"actuator_share must be at most 1, got {positive['actuator_share']}")
-
-
-def _check_slots(motion: Motion) -> None:
-    rows = slot_violations(motion)
-    if len(rows):
-        move, bar = rows[0].tolist()
-        raise ValueError(
-            f"move {move} would twist bar {bar} in its slots; "
-            "lineup.fold(solid, joints='slotted') makes no such moves"
-        )
 
 
 def _trajectory_table(survey: Survey) -> str:

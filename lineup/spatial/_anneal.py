@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._jit import kernel
+from .._jit import kernel, part
 from ._loops import Loops
 from ._runs import (
     OUTSIDE,
@@ -73,7 +73,7 @@ class Stage(NamedTuple):
     last: Terms
 
 
-@kernel
+@part
 def pattern_of(board: Board, loops: Loops, loop: int, corner: NDArray[np.int64]) -> int:
     """Bits of the sides of a polygon that are links; its corners are written down."""
     shape, anchor = loops.shape[loop], loops.anchor[loop]
@@ -84,7 +84,7 @@ def pattern_of(board: Board, loops: Loops, loop: int, corner: NDArray[np.int64])
     return pattern
 
 
-@kernel
+@part
 def weight_gain(board: Board, corner: NDArray[np.int64], pattern: int, n: int) -> float:
     """Gain in covered weight of toggling a polygon; minus infinity if it is not allowed."""
     gain = 0.0
@@ -102,7 +102,7 @@ def weight_gain(board: Board, corner: NDArray[np.int64], pattern: int, n: int) -
     return gain
 
 
-@kernel
+@part
 def flip_sides(
     board: Board, corner: NDArray[np.int64], direction: NDArray[np.int64], pattern: int, n: int
 ) -> int:
@@ -115,7 +115,7 @@ def flip_sides(
     return change
 
 
-@kernel
+@part
 def settle_detour(board: Board, scratch: Scratch, direction: NDArray[np.int64], n: int) -> None:
     """Bring the order up to date where one run of links gave way to a detour."""
     corner, end_corner = scratch.corner, scratch.end_corner
@@ -143,7 +143,7 @@ def settle_detour(board: Board, scratch: Scratch, direction: NDArray[np.int64], 
         order_strand(board, board.ends[0] if strand == PATH else corner[first], strand)
 
 
-@kernel
+@part
 def order_stretch(
     board: Board, first: int, direction: int, last: int, stretch: NDArray[np.int64]
 ) -> None:
@@ -166,7 +166,7 @@ def order_stretch(
         key += gap
 
 
-@kernel
+@part
 def settle_strands(
     board: Board,
     scratch: Scratch,
@@ -194,7 +194,7 @@ def settle_strands(
             order_strand(board, corner[k], board.tally[LABEL])
 
 
-@kernel
+@part
 def is_spared(board: Board, a: int, b: int, rng: np.random.Generator) -> bool:
     """Whether to leave alone what lies between two cells of the path: the likelier the longer.
 
@@ -203,7 +203,7 @@ def is_spared(board: Board, a: int, b: int, rng: np.random.Generator) -> bool:
     return abs(board.key[b] - board.key[a]) * rng.random() > REACH * SPACING
 
 
-@kernel
+@part
 def swap(
     board: Board,
     scratch: Scratch,
@@ -247,7 +247,7 @@ def swap(
     return True
 
 
-@kernel
+@part
 def try_loop(
     board: Board,
     loops: Loops,
@@ -266,7 +266,7 @@ def try_loop(
         swap(board, scratch, loops.direction[shape], pattern, n, gain, threshold, terms, rng)
 
 
-@kernel
+@part
 def exposure_gain(board: Board, side: int, new_end: int, hidden: float) -> float:
     """Gain of moving one end of the path, where `hidden` is the price of no end seeing out."""
     if board.exits[board.ends[1 - side]]:
@@ -275,7 +275,7 @@ def exposure_gain(board: Board, side: int, new_end: int, hidden: float) -> float
     return hidden * (int(after) - int(before))
 
 
-@kernel
+@part
 def order_on(board: Board, cell: int, back: int, side: int) -> None:
     """Bring the path up to date from `cell` to its end on a side; direction `back` is in order."""
     before = cell + board.stride[back]
@@ -295,7 +295,7 @@ def order_on(board: Board, cell: int, back: int, side: int) -> None:
         back = (direction + 3) % 6
 
 
-@kernel
+@part
 def try_retreat(board: Board, side: int, threshold: float, terms: Terms) -> None:
     """Free an end of the path."""
     end = board.ends[side]
@@ -315,7 +315,7 @@ def try_retreat(board: Board, side: int, threshold: float, terms: Terms) -> None
         board.ahead[new_end] = NO_DIRECTION
 
 
-@kernel
+@part
 def try_advance(
     board: Board,
     side: int,
@@ -362,7 +362,7 @@ def try_advance(
         order_on(board, cell, (direction + 3) % 6, side)
 
 
-@kernel
+@part
 def terms_at(stage: Stage, share: float) -> Terms:
     """The terms after a share of a stage."""
     first, last = stage

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._jit import kernel
+from .._jit import kernel, part
 from ._anneal import BLOCK, Stage, Terms, pattern_of, swap, terms_at, weight_gain
 from ._loops import Loops
 from ._runs import Scratch, new_scratch
@@ -51,7 +51,7 @@ class Nest(NamedTuple):
     piece: NDArray[np.int64]
 
 
-@kernel
+@part
 def step_in_piece(board: Board, nest: Nest, cell: int, slot: int) -> tuple[int, int]:
     """The next cell of a piece and the slot of it that leads back; -1 where the piece ends.
 
@@ -84,7 +84,7 @@ def label_piece(board: Board, nest: Nest, start: int, label: int) -> None:
             return
 
 
-@kernel
+@part
 def label_corners(board: Board, nest: Nest, corner: NDArray[np.int64], n: int) -> None:
     """Label the pieces through the corners of a square anew."""
     for k in range(n):
@@ -95,13 +95,13 @@ def label_corners(board: Board, nest: Nest, corner: NDArray[np.int64], n: int) -
             label_piece(board, nest, corner[k], board.tally[LABEL])
 
 
-@kernel
+@part
 def is_bridge(nest: Nest, corner: NDArray[np.int64], direction: NDArray[np.int64]) -> bool:
     """Whether the two vertical links of a vertical square are halves of one bridge."""
     return nest.mate[corner[0]] == direction[1]
 
 
-@kernel
+@part
 def keeps_nesting(
     board: Board,
     nest: Nest,
@@ -128,7 +128,7 @@ def keeps_nesting(
     return False
 
 
-@kernel
+@part
 def settle_pieces(
     board: Board,
     nest: Nest,
@@ -149,7 +149,7 @@ def settle_pieces(
     label_corners(board, nest, corner, 4)
 
 
-@kernel
+@part
 def try_square(
     board: Board,
     nest: Nest,

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._jit import kernel
+from .._jit import kernel, part
 from ._strands import PATH, Board
 
 MOST_RUNS = 4
@@ -60,7 +60,7 @@ def new_scratch(n_cells: int) -> Scratch:
     )
 
 
-@kernel
+@part
 def find_runs(pattern: int, n: int, end_corner: NDArray[np.int64]) -> int:
     """Number of runs of links round a polygon; the corners where each begins and ends."""
     n_runs = 0
@@ -75,7 +75,7 @@ def find_runs(pattern: int, n: int, end_corner: NDArray[np.int64]) -> int:
     return n_runs
 
 
-@kernel
+@part
 def join_beyond(board: Board, scratch: Scratch, direction: NDArray[np.int64], n_runs: int) -> int:
     """Which ends of runs the strands join beyond the polygon; the number of cycles among them."""
     corner, end_corner, enter, beyond = (
@@ -110,7 +110,7 @@ def join_beyond(board: Board, scratch: Scratch, direction: NDArray[np.int64], n_
     return n_cycles
 
 
-@kernel
+@part
 def comes_before(board: Board, a: int, b: int) -> bool:
     """Whether cell a comes before cell b, by strand and along it."""
     if board.strand[a] != board.strand[b]:
@@ -118,20 +118,20 @@ def comes_before(board: Board, a: int, b: int) -> bool:
     return board.key[a] < board.key[b]
 
 
-@kernel
+@part
 def join(mate: NDArray[np.int64], a: int, b: int) -> None:
     """Make a and b each other's mates."""
     mate[a] = b
     mate[b] = a
 
 
-@kernel
+@part
 def across_gap(end: int, n_runs: int) -> int:
     """The end of a run that the sides of the polygon without links join to another one."""
     return (end + 1 if end & 1 else end - 1) % (2 * n_runs)
 
 
-@kernel
+@part
 def closed_strands(beyond: NDArray[np.int64], n_runs: int) -> int:
     """Number of cycles once links and gaps of a polygon are swapped."""
     seen, n_cycles = 0, 0
@@ -155,7 +155,7 @@ def closed_strands(beyond: NDArray[np.int64], n_runs: int) -> int:
     return n_cycles
 
 
-@kernel
+@part
 def path_runs(board: Board, scratch: Scratch, n_runs: int) -> tuple[int, int]:
     """The end where the path first enters a run, and the one where it last leaves one; or -1."""
     n = 0

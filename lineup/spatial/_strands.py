@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._jit import kernel
+from .._jit import kernel, part
 
 NO_DIRECTION = 6
 
@@ -69,7 +69,7 @@ class Board(NamedTuple):
     tally: NDArray[np.int64]
 
 
-@kernel
+@part
 def flip_link(board: Board, cell: int, direction: int) -> int:
     """Set or clear a link and recount the squares it lies on; the change in Us."""
     other = cell + board.stride[direction]
@@ -92,7 +92,7 @@ def flip_link(board: Board, cell: int, direction: int) -> int:
     return change
 
 
-@kernel
+@part
 def onward(board: Board, cell: int, back: int) -> int:
     """Direction of a cell's link other than `back`, or `NO_DIRECTION`."""
     rest = int(board.links[cell])
@@ -101,7 +101,7 @@ def onward(board: Board, cell: int, back: int) -> int:
     return int(Lowest[rest])
 
 
-@kernel
+@part
 def order_strand(board: Board, start: int, label: int) -> int:
     """Walk the strand through `start`, the first cell of a path, and write its order; its size."""
     cell, back, key, n = start, NO_DIRECTION, np.int64(0), 0
