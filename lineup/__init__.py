@@ -56,6 +56,8 @@ _HOME = {
     "write_manual": "manual",
     "read_manual": "manual",
     "standing_by_step": "manual",
+    "export_robot": "robot",
+    "Robot": "robot",
     "save": "storage",
     "load": "storage",
     "write_player": "viewer",

@@ -12,7 +12,7 @@ from typing import NoReturn
 
 import typer
 
-from . import chains, experiments, films, kit, manual, playing, printing, strength
+from . import chains, experiments, films, kit, manual, playing, printing, robot, strength
 from .experiments import EXPERIMENTS
 
 __all__ = ["EXPERIMENTS", "app", "main", "run"]
@@ -39,6 +39,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "print": printing.print_chain,
     "manual": manual.manual,
     "strength": strength.strength,
+    "robot": robot.robot,
     "sweep": experiments.sweep,
 }
 for name, command in COMMANDS.items():

@@ -6,6 +6,7 @@ anywhere; what it cannot promise is how many voxels it reaches. See PAPER.md, de
 """
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -141,46 +142,48 @@ def growth(
     """
     trial_rounds = _so_many(TRIAL_ROUNDS, solid) if trial_rounds is None else trial_rounds
     rounds = _so_many(ROUNDS, solid) if rounds is None else rounds
-    efforts = (("trial_rounds", trial_rounds), ("rounds", rounds), ("slot_rounds", slot_rounds))
-    for name, value in efforts:
-        if value < 0:
-            raise ValueError(f"{name} must not be negative, got {value}")
-    if ends not in (1, 2):
-        raise ValueError(f"ends must be 1 or 2, got {ends}")
-    if joints not in ("free", "slotted"):
-        raise ValueError(f"unknown joints {joints!r}; known: free, slotted")
+    _check(ends, joints, trial_rounds=trial_rounds, rounds=rounds, slot_rounds=slot_rounds)
     only = BOTH_ENDS if ends == 2 else 1
     rng = np.random.default_rng(seed)
     grid, body = body_of(solid)
     paths = layered_paths(solid, seed) if paths is None else paths
     starts = _checked_starts(solid, paths) or [_exposed_bar(solid)]
     target = NEVER if length is None else length
-    report = progress or (lambda share: None)
-    slot_rounds = slot_rounds if joints == "slotted" else 0
-    work = len(starts) * trial_rounds + rounds + slot_rounds * BATCH
+    tried = len(starts) * trial_rounds
+    work = tried + rounds + (BATCH * slot_rounds if joints == "slotted" else 0)
+    report = partial(_report, progress, max(work, 1))
     best: Fold | None = None
     for k, start in enumerate(starts):
         fold = _grown(grid, body, cells_of(start, solid.occupancy.shape), only, rng, target)
         _deepen(fold, only, rng, trial_rounds, target)
-        report((k + 1) * trial_rounds / max(work, 1))
+        report((k + 1) * trial_rounds)
         if best is None or fold.worth[0] > best.worth[0]:
             best = fold
     assert best is not None  # there is at least one start
-    spent = len(starts) * trial_rounds
-    _deepen(best, only, rng, rounds, target, lambda done: report((spent + done) / work))
+    _deepen(best, only, rng, rounds, target, lambda done: report(tried + done))
     if joints == "slotted":
-        spent += rounds
-        path, states = slotted(
-            best,
-            lambda cells, tries: straightenable(grid, cells, rng, only, tries, joints),
-            only,
-            rng,
-            slot_rounds,
-            target,
-            lambda done: report((spent + done * BATCH) / work),
-        )
-        load(best, path, states)
+        cut = partial(straightenable, grid, rng=rng, only=only, joints=joints)
+        told = partial(_report, progress, work, before=tried + rounds, each=BATCH)
+        load(best, *slotted(best, cut, only, rng, slot_rounds, target, told))
     return folding_of(solid, grid, best, "growth", joints)
+
+
+def _report(
+    progress: Callable[[float], None] | None, work: int, done: int, before: int = 0, each: int = 1
+) -> None:
+    """Tell the share of the work that is done."""
+    if progress is not None:
+        progress((before + each * done) / work)
+
+
+def _check(ends: int, joints: str, **efforts: int) -> None:
+    if ends not in (1, 2):
+        raise ValueError(f"ends must be 1 or 2, got {ends}")
+    if joints not in ("free", "slotted"):
+        raise ValueError(f"unknown joints {joints!r}; known: free, slotted")
+    for name, value in efforts.items():
+        if value < 0:
+            raise ValueError(f"{name} must not be negative, got {value}")
 
 
 def folding_of(

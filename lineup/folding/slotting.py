@@ -30,7 +30,7 @@ Planned = tuple[IntArray, IntArray]
 
 def slotted(
     fold: Fold,
-    shortcut: Callable[[IntArray, int], Planned],
+    shortcut: Callable[..., Planned],
     only: int,
     rng: np.random.Generator,
     rounds: int,
@@ -42,8 +42,8 @@ def slotted(
     Parameters
     ----------
     shortcut : function
-        Of a path (cells) and how many tries: the path with shortcuts that let it have a plan for
-        slotted joints, and that plan.
+        Of a path (cells) and `tries`: the path with shortcuts that let it have a plan for slotted
+        joints, and that plan.
     """
 
     def worth(planned: Planned) -> float:
@@ -55,7 +55,7 @@ def slotted(
             states = peel_plan(fold.grid, cells, rng, bias=bias, only=only, joints="slotted")
             if left_folded(states) <= 1:
                 return cells, states
-        return shortcut(cells, tries)
+        return shortcut(cells, tries=tries)
 
     best = max((planned(TRIES[0]) for _ in range(STARTS)), key=worth)
     most = min(target, len(fold.cells) - len(fold.cells) % 2)

@@ -35,10 +35,13 @@ AXES = ("y1", "z1", "x", "y2", "z2")
 Y1, Z1, X, Y2, Z2 = range(5)
 
 POLE = 1e-9
-BETWEEN = (0.25, 0.5, 0.75)
-"""Shares of an exact move at which it is looked at besides its ends."""
+"""A hinge's direction is at a pole of the angles if it is as near as this to it."""
 
-_EXACT = (Move.PEEL, Move.SWING, Move.DOOR)
+BETWEEN = (0.25, 0.5, 0.75)
+"""Shares of a step at which it is looked at besides its ends."""
+
+EVEN = 1e-7
+"""Degrees by which angles in the midst of a step may differ from those of an even change."""
 
 
 class Station(NamedTuple):
@@ -55,8 +58,9 @@ class Station(NamedTuple):
 def stations(motion: Motion, substeps: int) -> Iterator[Station]:
     """Moments of a motion in order of time, the first and last of each move among them.
 
-    What a PEEL, SWING or DOOR does between its two key stations is exactly what even angles do.
-    Other moves have `substeps` key stations, and angles between are near.
+    A move that angles do which all change evenly, as any PEEL, SWING and DOOR from a pose with
+    frames on the lattice, is one step from key station to key station. Others have `substeps`
+    even steps, in the midst of which even angles are near.
 
     Raises
     ------
@@ -72,37 +76,43 @@ def stations(motion: Motion, substeps: int) -> Iterator[Station]:
     yield now
     for k, row in enumerate(motion.moves):
         for station in _through(motion, k, row, now, substeps):
-            if station.key:
-                now = station
             yield station
+        now = station
 
 
-def _through(
-    motion: Motion, k: int, row: IntArray, start: Station, substeps: int
-) -> Iterator[Station]:
-    """The stations of move k, one at its beginning among them if there is a flip."""
-    rigid = _rigid(start.pose, row) if row[0] in _EXACT else None
-    exact = rigid is not None and is_lattice(start.pieces)
-    n_steps = 1 if exact else substeps
+def _through(motion: Motion, k: int, row: IntArray, start: Station, substeps: int) -> list[Station]:
+    """The stations of move k: in one step if angles that change evenly do what it does."""
+    whole = _steps(motion, k, row, start, 1)
+    first, last = (start if whole[0].share > 0 else whole[0]), whole[-1]
+    turn = last.angles - first.angles
+    uneven = [s.angles - first.angles - s.share * turn for s in whole if s.share > 0]
+    return whole if np.abs(uneven).max() < EVEN else _steps(motion, k, row, start, substeps)
+
+
+def _steps(motion: Motion, k: int, row: IntArray, start: Station, n_steps: int) -> list[Station]:
+    """The stations of move k in even steps, and where there is a flip one before a step."""
+    rigid = _rigid(start.pose, row) if row[0] in (Move.PEEL, Move.SWING, Move.DOOR) else None
     to_lattice = row[0] != Move.BEND or on_lattice(motion.angles[row[3]])
-    now = start
-    for s in range(1, n_steps + 1):
-        places = []
-        for share in (*BETWEEN, 1.0) if exact else (s / n_steps,):
+    shares = np.array([*BETWEEN, 1.0])
+    now, found = start, list[Station]()
+    for s in range(n_steps):
+        places, near = [], (now.pose, now.pieces)
+        for share in ((s + shares) / n_steps).tolist():
             pose = moved(start.pose, row, motion, share)
-            pieces = _turned(start.pieces, rigid, share) if rigid else _carried(now, pose)
+            pieces = _turned(start.pieces, rigid, share) if rigid else _carried(*near, pose)
             if share == 1 and to_lattice:
                 pose, pieces = np.rint(pose), _settled(pieces)
+            near = pose, pieces
             places.append((share, pose, pieces))
-        flip = _flip(now, *places[len(places) // 2][1:], k, (s - 1) / n_steps)
+        flip = _flip(now, *places[1][1:], k, s / n_steps)
         if flip is not None:
-            yield flip
+            found.append(flip)
             now = flip
         for share, pose, pieces in places:
             angles = resolved(pieces, _hinges(pose), now.angles)
-            last = Station(k, share, share == places[-1][0], pose, pieces, angles)
-            yield last
-        now = last
+            found.append(Station(k, share, share == places[-1][0], pose, pieces, angles))
+        now = found[-1]
+    return found
 
 
 def _flip(
@@ -136,13 +146,14 @@ def resolved(pieces: FloatArray, hinges: FloatArray, before: FloatArray) -> Floa
     twist = np.einsum("nji,njk->nik", first, second)
     x = np.degrees(np.arctan2(twist[:, 2, 1], twist[:, 1, 1]))
     angles[:, X] = x - 360 * np.rint((x - before[:, X]) / 360)
-    return angles + 0.0  # no -0
+    return np.round(angles, 12) + 0.0  # no -0
 
 
 def _bend(hinge: FloatArray, y_before: FloatArray) -> tuple[FloatArray, FloatArray]:
     """The angles y and z that turn x to a direction (n, 3): (cos y cos z, sin z, -sin y cos z)."""
-    z = np.degrees(np.arcsin(np.clip(hinge[:, 1], -1, 1)))
-    at_pole = np.hypot(hinge[:, 0], hinge[:, 2]) < POLE
+    from_pole = np.hypot(hinge[:, 0], hinge[:, 2])
+    at_pole = from_pole < POLE
+    z = np.degrees(np.arctan2(hinge[:, 1], from_pole))
     y = np.degrees(np.arctan2(-hinge[:, 2], hinge[:, 0]))
     return np.where(at_pole, y_before, y), z
 
@@ -156,11 +167,6 @@ def about(axis: int, angles_deg: FloatArray) -> FloatArray:
     turns[:, u, u] = turns[:, v, v] = c
     turns[:, v, u], turns[:, u, v] = s, -s
     return turns
-
-
-def is_lattice(pieces: FloatArray) -> bool:
-    """Whether all axes of all frames lie along those of the lattice."""
-    return bool((np.abs(pieces - np.rint(pieces)) < 1e-9).all())
 
 
 def _hinges(pose: FloatArray) -> FloatArray:
@@ -221,26 +227,26 @@ def _rotation(axis: FloatArray, angle: float) -> FloatArray:
 def _settled(pieces: FloatArray) -> FloatArray:
     """Frames at the end of a move, those on the lattice without rounding errors."""
     whole = np.rint(pieces)
-    near = (np.abs(pieces - whole) < 1e-6).all(axis=(1, 2))
-    return np.where(near[:, None, None], whole, pieces)
+    near = (np.abs(pieces - whole) < 1e-6).all(axis=(1, 2), keepdims=True)
+    return np.where(near, whole, pieces)
 
 
-def _carried(now: Station, pose: FloatArray) -> FloatArray:
-    """Frames of the pieces in the next pose, each turned the shortest way.
+def _carried(last: FloatArray, frames: FloatArray, pose: FloatArray) -> FloatArray:
+    """Frames of the pieces in a pose near the last, each turned the shortest way.
 
     A capsule that keeps its direction goes with the hinges that lie across it, if they agree.
     """
-    bars, before = np.diff(pose, axis=0), np.diff(now.pose, axis=0)
+    bars, before = np.diff(pose, axis=0), np.diff(last, axis=0)
     of = _bars_of_pieces(len(bars))
-    pieces = _shortest(before[of], bars[of]) @ now.pieces
+    pieces = _shortest(before[of], bars[of]) @ frames
     capsules = np.arange(1, len(bars) - 1, 2)
     still = (np.abs(bars[capsules] - before[capsules]) < 1e-12).all(axis=1)
     spins = [
         _spin(before[capsules], before[capsules + side], bars[capsules + side]) for side in (-1, 1)
     ]
     spin = np.where(np.isnan(spins[0]), spins[1], spins[0])
-    agree = np.isnan(spins).any(axis=0) | (np.abs(spins[0] - spins[1]) < 1e-9)
-    for k in np.flatnonzero(still & agree & ~np.isnan(spin)):
+    differ = np.abs(spins[0] - spins[1]) >= 1e-9  # no where one of them is nan
+    for k in np.flatnonzero(still & ~differ & ~np.isnan(spin)):
         pieces[k + 1] = _rotation(bars[capsules[k]], spin[k]) @ pieces[k + 1]
     return pieces
 

@@ -45,6 +45,14 @@ class Bodies:
         """Mass of a block in the midst of the chain."""
         return self.capsule_kg + self.hinge_kg
 
+    def inertial(self, kind: str) -> tuple[float, float, tuple[float, float]]:
+        """Mass, centre of mass beyond the joint, and moments of a "hinge", "capsule" or "end"."""
+        if kind == "hinge":
+            return self.hinge_kg, self.pitch_m / 2, self.hinge_kgm2
+        if kind == "capsule":
+            return self.capsule_kg, self.pitch_m / 2, self.capsule_kgm2
+        return self.end_kg, self.end_com_m, self.end_kgm2
+
 
 def bodies_of(pitch_mm: float, gap_mm: float, density: float) -> Bodies:
     """The pieces of a chain of such a pitch, gap between blocks that touch, and kg a cubic metre.
@@ -58,7 +66,7 @@ def bodies_of(pitch_mm: float, gap_mm: float, density: float) -> Bodies:
     --------
     >>> from lineup.robot.bodies import bodies_of
     >>> f"{1000 * bodies_of(10.0, 0.3, 1130.0).block_kg:.2f} g"
-    '1.37 g'
+    '1.38 g'
     """
     for name, value in (("pitch_mm", pitch_mm), ("density", density)):
         if not (np.isfinite(value) and value > 0):
