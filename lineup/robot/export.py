@@ -143,8 +143,8 @@ def _checked(folding: Folding | Motion, joints: str) -> Motion:
     motion = folding.motion if isinstance(folding, Folding) else folding
     if joints not in JOINTS:
         raise ValueError(f"unknown joints {joints!r}; known: {', '.join(JOINTS)}")
-    rows = slot_violations(motion) if joints == "slotted" else ()
-    if len(rows):
+    rows = slot_violations(motion) if joints == "slotted" else None
+    if rows is not None and len(rows):
         move, bar = (int(k) for k in rows[0])
         raise ValueError(
             f"move {move} would twist bar {bar} in its slots; "
@@ -158,10 +158,10 @@ def _needs(
 ) -> pd.DataFrame:
     """What actuators give and what is needed; notes the arms that tell."""
     weight = bodies.block_kg * told["gravity"] * bodies.pitch_m
-    arms = [float(most.max()) / weight for most in (survey.held_nm, survey.moved_nm)]
-    told["largest_held_block_pitches"], told["largest_moved_block_pitches"] = arms
+    held, moved = (float(most.max()) / weight for most in (survey.held_nm, survey.moved_nm))
+    told["largest_held_block_pitches"], told["largest_moved_block_pitches"] = held, moved
     share, seconds = told["actuator_share"], told["move_seconds"]
-    return comparison(*arms, bodies.pitch_m, told["gravity"], share, seconds, actuators)
+    return comparison(held, moved, bodies.pitch_m, told["gravity"], share, seconds, actuators)
 
 
 def _described(
