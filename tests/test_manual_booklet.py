@@ -6,11 +6,12 @@ import re
 import numpy as np
 import pypdf
 import pytest
+from hands import folded
 
 import lineup as lu
 from lineup import cli, draw, grid
 from lineup.kinematics import Move
-from lineup.manual import booklet, pictures, plans, sheets, step_pages
+from lineup.manual import booklet, pictures, plans, scene, sheets, step_pages
 from lineup.manual.assembly import assembly_of
 from lineup.manual.documents import document_of
 
@@ -122,6 +123,24 @@ def test_what_lies_upside_down_is_turned_over_at_the_end(document, pages):
     assert "Turn the model over" in pages[-1]
 
 
+def test_a_loose_end_that_hangs_down_is_told_of():
+    assembly = assembly_of(folded((4, 4, 4), 5))
+    document = document_of(assembly, lu.Certificate(True, ""), "cube")
+    told = []
+    for row in document.steps:
+        ends = scene.loose_ends(assembly, assembly.steps[row.step - 1].stop)
+        sheet = step_pages.step_page(assembly, row, "cube", "letter", 1, 1)
+        said = " ".join(text.get_text() for text in sheet.axes.texts)
+        for end in ends:
+            hangs = f"The loose {end.name} hangs down ({end.n_voxels} voxels)" in said
+            assert hangs == (grid.LETTERS[end.direction] == "D")
+            told.append(hangs)
+        numbers = {text.get_text() for text in sheet.axes.texts if text.get_bbox_patch()}
+        assert {str(row.stretches[0].first_block), str(row.last_block)} <= numbers
+    assert any(told)
+    assert not all(told)
+
+
 def test_a_motion_that_the_judge_refuses_is_told_on_the_cover(tmp_path):
     files = lu.write_manual(a_folding(diameter=1.5), tmp_path)
     cover = pypdf.PdfReader(files.pdf).pages[0].extract_text()
@@ -221,7 +240,7 @@ def test_what_is_new_is_shown_dark_and_where_it_is():
     old = np.array([(x, y, 1) for x in range(1, 5) for y in range(1, 4)])
     new = np.array([(x, y, 2) for x in range(1, 5) for y in range(1, 4)])
     ends = [pictures.LooseEnd("tail", new[0], 2)]
-    picture = pictures.body_picture(old, new, ends, np.vstack([old, new]), 200, 160)
+    picture = pictures.body_picture(old, new, ends, 200, 160)
     image = picture.image.astype(int)
     red = (image[..., 0] - image[..., 2] > 60).nonzero()[0]
     grey = ((np.ptp(image, axis=2) < 12) & (image[..., 0] > 60) & (image[..., 0] < 200)).nonzero()[
@@ -271,3 +290,14 @@ def test_a_document_of_nothing_certified_still_says_why(tmp_path):
         "bend_deg": None,
         "moves_checked": 0,
     }
+
+
+@pytest.mark.slow
+def test_a_manual_of_754_blocks_is_small_and_comes_back(tmp_path):
+    made = lu.fold(lu.model("bunny", voxels=1600), length=1508)
+    files = lu.write_manual(made, tmp_path, name="bunny")
+    assert files.pdf.stat().st_size < 5_000_000
+    for file in (files.json, files.csv):
+        again = lu.read_manual(file)
+        assert np.array_equal(again.path.voxels, made.path.voxels)
+        assert lu.certify(again.motion).ok

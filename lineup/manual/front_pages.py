@@ -14,9 +14,9 @@ from .documents import Document, StepRow
 from .grade import SECONDS_A_BEND, SECONDS_A_STEP, SECONDS_A_SWING, WORDS
 from .pictures import body_picture, model_picture
 from .plans import Plan, base_bar, ground
-from .scene import in_place, loose_ends
-from .sheets import MARGIN, Sheet, blank, box, compass, foot, line, say, show, title
-from .step_pages import WAYS
+from .scene import loose_ends
+from .sheets import MARGIN, POINT, Sheet, blank, box, compass, foot, line, say, show, title
+from .step_pages import WAYS, hanging
 
 _DOTS = 6.5  # of a picture, to the millimetre
 CHECKLIST = 44
@@ -96,7 +96,7 @@ def _verdict(sheet: Sheet, document: Document, top: float) -> None:
     verdict = document.verdict
     width = sheet.width - 2 * MARGIN
     box(sheet, MARGIN, top, width, 32, linewidth=1.4)
-    blocks = f"blocks of diameter {document.diameter:g} and bends up to {document.max_bend_deg:g}°"
+    blocks = f"blocks {document.diameter:g} voxels thick and bends up to {document.max_bend_deg:g}°"
     if verdict.ok:
         head = "CERTIFIED"
         text = (
@@ -131,6 +131,8 @@ def card_page(
     layer = int(assembly.places[list(assembly.base), 2].min())
     ground(sheet, plan, assembly.places[:0], layer)
     base_bar(sheet, plan, assembly, layer)
+    x, y = plan.at(assembly.places[assembly.base[0]]).tolist()
+    say(sheet, x, y, "base", 0.22 * cell * POINT, ha="center", va="center", zorder=5)
     compass(sheet, plan.left + columns * cell + 5, plan.top + 5)
     y = plan.top + rows * cell + 10
     size = "to size" if cell == pitch_mm else f"at {cell / pitch_mm:.0%} of its size"
@@ -152,6 +154,7 @@ def _base_text(sheet: Sheet, assembly: Assembly, top: float) -> None:
         f"The {end.name} end of the chain then points {WAYS['ENUWSD'[end.direction]]}."
         for end in loose_ends(assembly, 0)
     ]
+    ends += [hanging(end) for end in loose_ends(assembly, 0) if end.hangs]
     (column, row, layer), (column2, row2, layer2) = assembly.places[[a, b]].tolist()
     raised = min(layer, layer2)
     upright = (column, row) == (column2, row2)
@@ -168,12 +171,9 @@ def _base_text(sheet: Sheet, assembly: Assembly, top: float) -> None:
 
 def _lying(sheet: Sheet, assembly: Assembly, top: float) -> None:
     """How the model lies while it is folded."""
-    none = in_place(assembly, 0)[:0]
     width, height = 88.0, 72.0
-    places = assembly.places
-    picture = body_picture(
-        places, places[none], [], places, round(_DOTS * width), round(_DOTS * height)
-    )
+    dots = round(_DOTS * width), round(_DOTS * height)
+    picture = body_picture(assembly.places, assembly.places[:0], [], *dots)
     show(sheet, sheet.right - width, top, width, height, picture.image)
     how = LYING[assembly.build.down]
     turn = "" if assembly.build.down == "D" else " At the end you turn it over."

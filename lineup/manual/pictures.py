@@ -19,15 +19,22 @@ OLD, NEW, ROD = (158, 158, 158), (176, 64, 36), (40, 40, 40)
 
 _CLAY = ((233, 196, 134), (214, 174, 110))
 _ROD_LENGTH = 4.0
+_LEAST_HALF_HEIGHT = 6.0  # so that the first voxels do not fill the picture
 _COLOURS = 128  # so that a page is small
 
 
 class LooseEnd(NamedTuple):
-    """Where a loose end leaves the body, and which way it points."""
+    """Where a loose end leaves the body, which way it points, and of how many voxels it is."""
 
     name: str
     place: IntArray
     direction: int
+    n_voxels: int = 1
+
+    @property
+    def hangs(self) -> bool:
+        """Whether it points down."""
+        return grid.LETTERS[self.direction] == "D"
 
 
 class Picture(NamedTuple):
@@ -49,7 +56,6 @@ def body_picture(
     old: IntArray,
     new: IntArray,
     loose: Sequence[LooseEnd],
-    whole: IntArray,
     width: int,
     height: int,
 ) -> Picture:
@@ -57,9 +63,8 @@ def body_picture(
 
     Parameters
     ----------
-    old, new, whole : (n, 3) int32
-        Places of the body before the step, of what the step adds, and of the finished model; the
-        last only sets the scale.
+    old, new : (n, 3) int32
+        Places of the body before the step, and of what the step adds.
     """
     both = np.concatenate([old, new])
     shade = np.repeat(np.array([OLD, NEW], np.uint8), [len(old), len(new)], axis=0)
@@ -69,8 +74,8 @@ def body_picture(
     ways = np.array([grid.DIRECTIONS[end.direction] for end in loose], float).reshape(-1, 3)
     if len(loose):
         bodies += [_rod(start, way) for start, way in zip(starts, ways, strict=True)]
-    tips = starts + _ROD_LENGTH * ways
-    view = _view(np.concatenate([whole, tips]), width / height)
+    names = starts + (_ROD_LENGTH + 1) * ways
+    view = _view(np.concatenate([both, names]), width / height)
     image = few_colours(rendered(bodies, view, width, height))
     return Picture(image, _names(view, loose, starts, ways, width / height))
 
@@ -99,7 +104,8 @@ def _rod(start: FloatArray, way: FloatArray) -> Capsules:
 
 
 def _view(points: NDArray[np.float64], aspect: float) -> View:
-    return view_of(points, aspect, azimuth_deg=-60.0, elevation_deg=32.0)
+    view = view_of(points, aspect, azimuth_deg=-60.0, elevation_deg=32.0)
+    return View(view.centre, view.back, max(view.half_height, _LEAST_HALF_HEIGHT))
 
 
 def _names(

@@ -12,7 +12,7 @@ from matplotlib.patches import Rectangle
 
 from ..draw.page import GREY, INK
 from ..grid import FloatArray, IntArray
-from .actions import Action
+from .actions import HEAD, TAIL, Action
 from .assembly import Assembly
 from .sheets import POINT, RAMP, Sheet, line, say, wedge
 
@@ -134,9 +134,6 @@ def base_bar(sheet: Sheet, plan: Plan, assembly: Assembly, layer: int) -> None:
             line(sheet, here, width + wider, colour, zorder=zorder)
         for at in here:
             line(sheet, [at, at], plan.cell * PIECE + wider, colour, zorder=zorder)
-    for x, y in here[:1].tolist():
-        size = min(9.0, 0.22 * plan.cell * POINT)
-        say(sheet, x, y, "base", size, ha="center", va="center", zorder=5)
 
 
 def _square(plan: Plan, place: IntArray) -> Rectangle:
@@ -209,17 +206,19 @@ def _draw_way(sheet: Sheet, plan: Plan, bar: _Bar, layer: int) -> None:
 def _numbers(
     sheet: Sheet, plan: Plan, assembly: Assembly, laid: Sequence[Action], layer: int
 ) -> None:
-    """Numbers of blocks at their hinges: the first (black), the last (square), and every tenth."""
-    blocks = list(dict.fromkeys(action.joint // 2 for action in laid))
-    for block in blocks:
-        places = assembly.places[[a.joint for a in laid if a.joint // 2 == block]]
-        first, last = block == blocks[0], block == blocks[-1]
-        # The number of an upright hinge is in the layer of its voxel that comes first.
-        if places[0, 2] != layer or not (first or last or (block + 1) % TENTH == 0):
-            continue
-        here = places[places[:, 2] == layer]
-        x, y = plan.at(here).mean(axis=0).tolist()
-        number_mark(sheet, x, y, block + 1, plan.cell, "first" if first else "last" if last else "")
+    """Numbers of blocks at their hinges: an end's first (black), its last (square), each tenth."""
+    for end in (HEAD, TAIL):
+        blocks = list(dict.fromkeys(a.joint // 2 for a in laid if a.end == end))
+        for block in blocks:
+            places = assembly.places[
+                [a.joint for a in laid if (a.joint // 2, a.end) == (block, end)]
+            ]
+            kind = "first" if block == blocks[0] else "last" if block == blocks[-1] else ""
+            # The number of an upright hinge is in the layer of its voxel that comes first.
+            if places[0, 2] != layer or not (kind or (block + 1) % TENTH == 0):
+                continue
+            x, y = plan.at(places[places[:, 2] == layer]).mean(axis=0).tolist()
+            number_mark(sheet, x, y, block + 1, plan.cell, kind)
 
 
 def number_mark(sheet: Sheet, x: float, y: float, number: int, cell: float, kind: str) -> None:

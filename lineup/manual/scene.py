@@ -31,6 +31,7 @@ def loose_ends(assembly: Assembly, n_actions: int) -> list[LooseEnd]:
             ENDS[end],
             assembly.places[at[end]],
             grid.LETTERS.index(assembly.build.letters[ways[end]]),
+            abs(last - at[end]),
         )
         for end, last in ((HEAD, 0), (TAIL, len(assembly.places) - 1))
         if at[end] != last

@@ -13,7 +13,7 @@ from .actions import ENDS, TAIL, Action
 from .assembly import Assembly
 from .build import covered
 from .documents import StepRow
-from .pictures import body_picture
+from .pictures import LooseEnd, body_picture
 from .plans import Plan, base_bar, draw_plan
 from .scene import in_place, loose_ends
 from .sheets import MARGIN, Sheet, blank, box, compass, foot, say, show
@@ -69,7 +69,7 @@ def _head(sheet: Sheet, assembly: Assembly, row: StepRow, actions: Sequence[Acti
         _badge(sheet, sheet.right - 26 - 29 * k, 11, end)
     say(sheet, MARGIN, 22.5, _summary(assembly, row, actions), 11)
     y = 30.0
-    for text in _instructions(assembly, parts, actions):
+    for text in _instructions(assembly, parts, actions, assembly.steps[row.step - 1].stop):
         say(sheet, MARGIN, y, text, 9.5)
         y += 5.2 * (1 + text.count("\n"))
     return y
@@ -106,10 +106,10 @@ def _summary(assembly: Assembly, row: StepRow, actions: Sequence[Action]) -> str
 
 
 def _instructions(
-    assembly: Assembly, parts: Sequence[Stretch], actions: Sequence[Action]
+    assembly: Assembly, parts: Sequence[Stretch], actions: Sequence[Action], n_actions: int
 ) -> list[str]:
     """What to do before the first voxel is laid, and what is out of the common; a line each."""
-    texts: list[str] = []
+    texts = ["The base is white on the plan."] if actions[0] is assembly.actions[0] else []
     for k, part in enumerate(parts):
         what = "hinge" if part.laid[0].lays_hinge else "piece"
         when = f"Before the {what} of block {part.blocks[0]}, swing" if k else "Swing"
@@ -122,6 +122,7 @@ def _instructions(
     places = assembly.places[_laid(actions)]
     if places[-1, 2] not in drawn_layers(places):
         texts.append(f"The hinge of block {parts[-1].blocks[1]} stands upright at the end.")
+    texts += [hanging(end) for end in loose_ends(assembly, n_actions) if end.hangs]
     below = covered(assembly.places, assembly.base, assembly.actions)
     hidden = len(set(_laid(actions)) & set(below))
     if hidden:
@@ -134,6 +135,14 @@ def _instructions(
             "the side of its letter."
         )
     return texts
+
+
+def hanging(end: LooseEnd) -> str:
+    """What to do about a loose end that points down."""
+    return (
+        f"The loose {end.name} hangs down ({end.n_voxels} voxels): keep it over the edge of the "
+        "table."
+    )
 
 
 def _laid(actions: Sequence[Action]) -> list[int]:
@@ -227,7 +236,6 @@ def _thumbnail(
         assembly.places[old],
         assembly.places[new],
         loose_ends(assembly, span.stop),
-        assembly.places,
         round(_DOTS * width),
         round(_DOTS * height),
     )
@@ -270,9 +278,10 @@ def _check(sheet: Sheet, assembly: Assembly, row: StepRow, top: float) -> None:
         for end in loose_ends(assembly, done)
     )
     text = (
-        f"Block {row.last_block} ends in column {column}, row {line}, layer {layer}. {ends}",
+        f"Block {row.last_block} ends in column {column}, row {line}, layer {layer}.",
         f"Voxels in layer {layer} so far: {in_layer}. Blocks in place: {whole} of "
         f"{assembly.n_blocks}.",
         f"Size of the body: {columns} columns, {rows} rows, {layers} layers high.",
+        ends,
     )
     say(sheet, MARGIN + 34, top + 3, "\n".join(text), 9.5)

@@ -9,8 +9,8 @@ from .actions import Action
 LEAST, MOST = 10, 60
 """Voxels of a step: a run of fewer is joined to one beside it, and one of more is cut."""
 
-MOST_RUNS, MOST_LAYERS = 8, 4
-"""Of a step that is joined from short runs."""
+MOST_RUNS, MOST_LAYERS, MOST_BY_BOTH = 8, 4, 20
+"""Of a step that is joined from short runs; the last, voxels if both ends are at work."""
 
 
 class _Run(NamedTuple):
@@ -20,6 +20,7 @@ class _Run(NamedTuple):
     stop: int
     n_voxels: int
     layers: frozenset[int]
+    ends: frozenset[int]
     n_runs: int = 1
 
 
@@ -53,7 +54,7 @@ def _runs(places: IntArray, actions: Sequence[Action]) -> Iterator[_Run]:
     kind = None
     for unit in _units(places, actions):
         first = actions[unit.first]
-        of_unit = (actions[unit.stop - 1].end, unit.layers)
+        of_unit = (unit.ends, unit.layers)
         if units and (first.swings or of_unit != kind):
             yield from _cut(units)
             units = []
@@ -72,7 +73,7 @@ def _units(places: IntArray, actions: Sequence[Action]) -> Iterator[_Run]:
         after = actions[k + 1] if k + 1 < len(actions) else None
         same = (action.end, action.joint // 2) == (after and (after.end, after.joint // 2))
         if n_voxels and (after is None or after.swings or not same):
-            yield _Run(first, k + 1, n_voxels, frozenset([layer]))
+            yield _Run(first, k + 1, n_voxels, frozenset([layer]), frozenset([action.end]))
             first, n_voxels = k + 1, 0
 
 
@@ -98,6 +99,7 @@ def _joined(run: _Run, after: _Run) -> _Run:
         after.stop,
         run.n_voxels + after.n_voxels,
         run.layers | after.layers,
+        run.ends | after.ends,
         run.n_runs + after.n_runs,
     )
 
@@ -106,7 +108,7 @@ def _go_together(step: _Run, run: _Run) -> bool:
     both = _joined(step, run)
     return (
         min(step.n_voxels, run.n_voxels) < LEAST
-        and both.n_voxels <= MOST
+        and both.n_voxels <= (MOST if len(both.ends) == 1 else MOST_BY_BOTH)
         and both.n_runs <= MOST_RUNS
         and len(both.layers) <= MOST_LAYERS
     )
