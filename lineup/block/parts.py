@@ -24,7 +24,7 @@ from ..grid import FloatArray, IntArray
 from .parameters import WALL_MM, Block, socket_depth_mm, swivel
 
 _AROUND = 1.3  # how far cutters reach beyond the surface, relative to it
-_SLOT_STEPS = 8
+_SLOT_STEPS = 6
 NECK = np.pi / 4
 """Where slots are narrowest, from the pole: half way between two lattice states of a joint."""
 _JOIN_HALF_WIDTH = 0.25  # of the tongue's top, relative to the capsule's diameter

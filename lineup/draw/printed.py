@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,9 +20,10 @@ from .view import Triangles, View, view_of
 _SIZE = 10.0
 """Edge of a voxel in the units of a picture: shadows are made for things some units large."""
 
+_SEGMENTS = 64  # that rounds look round
+
 _FIRST, _SECOND, _THIRD, _STEEL = "#e8a33d", "#4c8fd6", "#6bb36b", "#6a7078"
 _RED = "#c43c39"
-_CUT = "#f3d9a4"
 
 
 def block(block: Block) -> Figure:
@@ -35,6 +37,7 @@ def block(block: Block) -> Figure:
     >>> [axes.get_title() for axes in draw.block(Block()).axes][:2]
     ['a  a block', 'b  two blocks, taken apart']
     """
+    block = _smooth(block)
     figure = page(13, 7.2)
     _axes_panel(figure, (0.0, 0.4, 0.4, 0.53), block)
     _apart_panel(figure, (0.4, 0.4, 0.6, 0.53), block)
@@ -65,6 +68,7 @@ def slots(block: Block) -> Figure:
     >>> [axes.get_title() for axes in draw.slots(Block()).axes]
     ['a  cut open', 'b  end on', 'c  width of a slot']
     """
+    block = _smooth(block)
     figure = page(13, 4.4)
     _cut_panel(figure, (0.0, 0.0, 0.43, 0.92), block)
     _end_on_panel(figure, (0.43, 0.0, 0.27, 0.92), block)
@@ -73,6 +77,10 @@ def slots(block: Block) -> Figure:
     for panel, title in zip(figure.axes, ("cut open", "end on", "width of a slot"), strict=True):
         _titled(panel, f"{'abc'[figure.axes.index(panel)]}  {title}")
     return figure
+
+
+def _smooth(block: Block) -> Block:
+    return replace(block, segments=max(block.segments, _SEGMENTS))
 
 
 def _titled(axes: Axes, title: str) -> None:
@@ -149,15 +157,16 @@ def _axes_panel(figure: Figure, place: tuple[float, float, float, float], block:
             ("z", (0, 0, 1.2)),
         )
         for letter, direction in arrows:
-            tip = np.array([ball, 0, 0]) + _SIZE * np.asarray(direction) * 0.75
-            _arrow(axes, view, (ball, 0, 0), tip, f"${letter}_{index}$")
+            start = np.array([ball, 0, 0])
+            tip = start + 0.75 * _SIZE * np.asarray(direction)
+            _arrow(axes, view, start, tip, f"${letter}_{index}$")
         at = _pixels(axes, view, (ball + way * 0.1 * _SIZE, -0.5 * _SIZE, -0.72 * _SIZE))[0]
-        axes.text(*at, f"${name}$, one voxel", ha="center", fontsize=12, color=GREY)
+        axes.text(at[0], at[1], f"${name}$, one voxel", ha="center", fontsize=12, color=GREY)
     _voxel_edges(axes, view)
 
 
-def _arrow(axes: Axes, view: View, start: ArrayLike, tip: ArrayLike, text: str) -> None:
-    ends = _pixels(axes, view, [start, tip])
+def _arrow(axes: Axes, view: View, start: FloatArray, tip: FloatArray, text: str) -> None:
+    ends = _pixels(axes, view, np.stack([start, tip]))
     axes.annotate(
         "",
         tuple(ends[1]),
@@ -165,14 +174,14 @@ def _arrow(axes: Axes, view: View, start: ArrayLike, tip: ArrayLike, text: str) 
         arrowprops={"arrowstyle": "-|>", "color": _RED, "lw": 1.6, "shrinkA": 0, "shrinkB": 0},
     )
     beyond = ends[1] + 14 * (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
-    axes.text(*beyond, text, ha="center", va="center", fontsize=14, color=_RED)
+    axes.text(beyond[0], beyond[1], text, ha="center", va="center", fontsize=14, color=_RED)
 
 
 def _voxel_edges(axes: Axes, view: View) -> None:
     """The two cubes that a block takes."""
     corner = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * _SIZE / 2
     for centre in (0.0, _SIZE):
-        at = corner + (centre, 0, 0)
+        at = corner + np.array([centre, 0, 0])
         for i in range(8):
             for j in range(i + 1, 8):
                 if (corner[i] != corner[j]).sum() == 1:
@@ -198,8 +207,8 @@ def _apart_panel(figure: Figure, place: tuple[float, float, float, float], block
     axes, view = _shown(figure, place, (block, pieces), -72, 16, 1.0)
     _titled(axes, "b  two blocks, taken apart")
     for point, (_, _, text) in zip(at, names, strict=True):
-        where = _pixels(axes, view, np.array(point) * _SIZE / a)[0]
-        axes.text(*where, text, ha="center", va="top", fontsize=10.5, color=INK, linespacing=1.5)
+        x, y = _pixels(axes, view, np.array(point) * _SIZE / a)[0].tolist()
+        axes.text(x, y, text, ha="center", va="top", fontsize=10.5, color=INK, linespacing=1.5)
 
 
 def _cut_panel(figure: Figure, place: tuple[float, float, float, float], block: Block) -> None:
@@ -279,7 +288,7 @@ def _end_on_panel(figure: Figure, place: tuple[float, float, float, float], bloc
         view,
         unit * neck,
         unit * np.array([0.7 * r, 0.7 * r, 1.35 * r]),
-        f"neck {block.neck_mm:g} mm",
+        f"{'neck' if block.snap_mm > 0 else 'slot'} {block.neck_mm:g} mm",
     )
     _label(
         axes,

@@ -91,7 +91,7 @@ def _meshes(body: Body) -> Iterator[Any]:
     import pyvista
 
     if isinstance(body, Triangles):
-        mesh = pyvista.PolyData.from_regular_faces(body.vertices, body.faces)
+        mesh = pyvista.PolyData.from_regular_faces(body.vertices, body.faces.astype(int))
         mesh["rgb"] = body.rgb
         yield mesh.compute_normals(split_vertices=True, feature_angle=_EDGE_DEG)
         return

@@ -72,14 +72,14 @@ def export_print(
 ) -> Print:
     """Write all that it takes to print a chain (Section 7, Figure 15).
 
-    ============================= ==========================================================
-    ``chain.3mf``, ``chain-K.3mf`` the chain, laid to and fro on one plate or on several
-    ``folded.3mf``                 instead of these, where the folded pose is printed
-    ``chain.stl``, ...             the same as triangles, on request: about 130 MB for 754 blocks
-    ``parts/NAME.stl``             every part on its own
-    ``coupon.3mf``                 three small chains that try clearances and snaps
-    ``parts.csv``, ``parts.md``    the bill of materials; how to join plates; the block's measures
-    ============================= ==========================================================
+    ================================ ======================================================
+    ``chain.3mf``, ``chain-K.3mf``   the chain, laid to and fro on one plate or on several
+    ``folded.3mf``                   instead of these, where the folded pose is printed
+    ``chain.stl``, ...               the same as triangles, on request: 170 MB for 754 blocks
+    ``parts/NAME.stl``               every part on its own
+    ``coupon.3mf``                   three small chains that try clearances and snaps
+    ``parts.csv``, ``parts.md``      the bill of materials, how to join plates, the block
+    ================================ ======================================================
 
     In the 3MF files every part is stored once in each of the chain's six colours and placed many
     times; a chain on a plate is one object. No piece touches another, in a pose of any simple

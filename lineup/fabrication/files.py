@@ -16,6 +16,7 @@ from ..block import Part
 from ..grid import FloatArray
 from .placing import Placed
 
+_DECIMALS = range(4, 10)  # of millimetres; more where rounding would make two vertices one
 _EPOCH = (1980, 1, 1, 0, 0, 0)
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 _PACKAGE = "http://schemas.openxmlformats.org/package/2006"
@@ -102,12 +103,18 @@ def _write_object(out: io.StringIO, number: int, material: int, painted: Painted
         f'<object id="{number}" type="model" name={quoteattr(painted.name)} '
         f'pid="1" pindex="{material}">\n<mesh>\n<vertices>\n'
     )
-    for x, y, z in painted.part.vertices.tolist():
-        out.write(f'<vertex x="{x:.3f}" y="{y:.3f}" z="{z:.3f}"/>\n')
+    vertices = painted.part.vertices
+    d = next((d for d in _DECIMALS if _apart(vertices.round(d))), _DECIMALS[-1])
+    for x, y, z in vertices.tolist():
+        out.write(f'<vertex x="{x:.{d}f}" y="{y:.{d}f}" z="{z:.{d}f}"/>\n')
     out.write("</vertices>\n<triangles>\n")
     for a, b, c in painted.part.faces.tolist():
         out.write(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>\n')
     out.write("</triangles>\n</mesh>\n</object>\n")
+
+
+def _apart(vertices: FloatArray) -> bool:
+    return len(np.unique(vertices, axis=0)) == len(vertices)
 
 
 def _zipped(texts: Mapping[str, str]) -> bytes:

@@ -213,11 +213,10 @@ def shortfall(result: Strength) -> str:
     >>> shortfall(lu.strength(hook))
     'tips over: its centre of mass is 2.5 mm outside of what it rests on'
     """
-    if not result.stands or result.reason not in (STANDS, f"held at {result.setting.held}"):
-        return result.reason
-    if result.safety < 1:
+    if result.stands and result.safety < 1:
         return f"{result.worst_face} gives way, at a safety factor of {result.safety:.3g}"
-    return ""
+    fine = result.reason in (STANDS, f"held at {result.setting.held}")
+    return "" if fine else result.reason
 
 
 def rounded(table: pd.DataFrame) -> pd.DataFrame:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-import pyamg
 from scipy import sparse
 from scipy.optimize import brentq
 from scipy.sparse.linalg import splu
@@ -104,6 +103,8 @@ def solver(matrix: Matrix, voxels: IntArray) -> Solver:
     blocks = matrix.tobsr((6, 6))
     if len(voxels) <= DIRECT or len(blocks.indices) <= 3 * len(voxels):
         return _factorized(matrix)
+    import pyamg  # takes seconds, which small bodies need not wait for
+
     levels = pyamg.smoothed_aggregation_solver(
         blocks,
         B=modes(voxels),
