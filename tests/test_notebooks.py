@@ -1,23 +1,36 @@
 """Notebooks run from top to bottom, and what is committed says nothing about who ran it."""
 
 import json
+import os
 import re
 from pathlib import Path
 
 import pytest
 
 nbclient = pytest.importorskip("nbclient")
+nbformat = pytest.importorskip("nbformat")
 jupytext = pytest.importorskip("jupytext")
 
 FOLDER = Path(__file__).parents[1] / "notebooks"
 NAMES = sorted(file.stem for file in FOLDER.glob("*.py"))
 
 
+@pytest.fixture(scope="module")
+def kernel():
+    """One Jupyter kernel for all notebooks, for it takes as long to start as they take to run."""
+    client = nbclient.NotebookClient(nbformat.v4.new_notebook(), timeout=60, kernel_name="python3")
+    with client.setup_kernel(cwd=str(FOLDER), env=os.environ | {"LINEUP_QUICK": "1"}):
+        yield client
+
+
 @pytest.mark.parametrize("name", NAMES)
-def test_a_notebook_runs(name, monkeypatch):
-    monkeypatch.setenv("LINEUP_QUICK", "1")
+def test_a_notebook_runs(name, kernel):
     notebook = jupytext.read(FOLDER / f"{name}.py")
-    nbclient.NotebookClient(notebook, timeout=60, kernel_name="python3").execute(cwd=str(FOLDER))
+    kernel.nb = notebook
+    kernel.reset_execution_trackers()
+    kernel.execute_cell(nbformat.v4.new_code_cell("%reset -f"), 0)
+    for k, cell in enumerate(notebook.cells):
+        kernel.execute_cell(cell, k)
     pictures = [
         output["data"]["image/jpeg"]
         for cell in notebook.cells
