@@ -19,6 +19,7 @@ from ._record import listed, of_kind
 from .bounds import path_bound
 from .catalog import model
 from .folding import fold
+from .joints import JOINTS
 from .judging import certify, certify_path
 from .layered import layered_paths
 from .motion.plan import DIAMETER, MAX_BEND_DEG
@@ -50,6 +51,7 @@ def lineup(
     *,
     seed: int = 0,
     ends: int = 2,
+    joints: str = "free",
     folder: str | os.PathLike[str] | None = None,
     progress: Callable[[str, str], None] | None = None,
 ) -> Design:
@@ -66,6 +68,8 @@ def lineup(
         Number of building blocks; each is two voxels.
     ends : int
         How many ends of the chain may let go, see `fold`; with 1, `transform` can stay in a box.
+    joints : str
+        "free", or "slotted": folded and judged so that no printed capsule has to twist, see `fold`.
     folder : path, optional
         Store each model as soon as it is done: ``NAME.solid.json`` and ``NAME.folding.json``. Made
         if it does not exist.
@@ -80,8 +84,8 @@ def lineup(
     Raises
     ------
     ValueError
-        If there are no models, two that would be stored under one name, fewer than two blocks, or
-        the seed is negative.
+        If there are no models, two that would be stored under one name, fewer than two blocks, the
+        seed is negative, or the joints are of no known kind.
 
     Examples
     --------
@@ -92,13 +96,15 @@ def lineup(
     """
     names = _names(models)
     _check_settings(blocks, seed)
+    if joints not in JOINTS:
+        raise ValueError(f"joints must be one of {JOINTS}, got {joints!r}")
     if folder is not None:
         if len(set(names)) < len(names):
             listed = ", ".join(sorted(names))
             raise ValueError(f"two models would be stored under one name: {listed}")
         Path(folder).mkdir(parents=True, exist_ok=True)
     attempts = [
-        _attempt(name, source, blocks, seed, ends, folder, progress)
+        _attempt(name, source, blocks, seed, folder, progress, ends, joints)
         for name, source in zip(names, models, strict=True)
     ]
     return _extended(Design((), (), (), pd.DataFrame()), attempts)
@@ -151,7 +157,7 @@ def add(
     blocks = lengths[0] // 2
     _check_settings(blocks, seed)
     (name,) = _names([model], first=len(design.table) + 1)
-    return _extended(design, [_attempt(name, model, blocks, seed, 2, None, progress)])
+    return _extended(design, [_attempt(name, model, blocks, seed, None, progress)])
 
 
 def transformations(
@@ -214,14 +220,15 @@ def _attempt(
     source: Source,
     blocks: int,
     seed: int,
-    ends: int,
     folder: str | os.PathLike[str] | None,
     progress: Callable[[str, str], None] | None,
+    ends: int = 2,
+    joints: str = "free",
 ) -> tuple[_Result | None, dict[str, Any]]:
     """What became of one model, None if it failed, and its row; stored if there is a folder."""
     tell = progress or (lambda name, stage: None)
     try:
-        result = _line_up(source, blocks, seed, partial(tell, name), ends)
+        result = _line_up(source, blocks, seed, partial(tell, name), ends, joints)
     except Exception as error:  # whatever is wrong with one model, the others go on
         expected = isinstance(error, ValueError | OSError)
         reason = str(error) if expected else f"{type(error).__name__}: {error}"
@@ -279,7 +286,12 @@ def _check_settings(blocks: int, seed: int) -> None:
 
 
 def _line_up(
-    source: Source, blocks: int, seed: int, tell: Callable[[str], None], ends: int = 2
+    source: Source,
+    blocks: int,
+    seed: int,
+    tell: Callable[[str], None],
+    ends: int = 2,
+    joints: str = "free",
 ) -> _Result:
     """Voxelize, fold, trim and judge one model; more voxels again while its path is too short."""
     length = 2 * blocks
@@ -291,7 +303,7 @@ def _line_up(
         with clock("layered"):
             paths = layered_paths(solid, seed)
         with clock("fold"):
-            folding = fold(solid, seed=seed, paths=paths, ends=ends)
+            folding = fold(solid, seed=seed, paths=paths, ends=ends, joints=joints)
         found = len(folding.path)
         if found >= length or isinstance(source, VoxelSolid):
             break
@@ -305,7 +317,7 @@ def _line_up(
         trimmed = trim([folding], length)[0]
     with clock("certify"):
         path_certificate = certify_path(trimmed.path, solid)
-        certificate = certify(trimmed.motion, DIAMETER, MAX_BEND_DEG)
+        certificate = certify(trimmed.motion, DIAMETER, MAX_BEND_DEG, joints=joints)
     judged = {
         **_path_row(solid, len(paths[0]), found, trimmed),
         **_verdict_row(trimmed, certificate, path_certificate),

@@ -60,16 +60,26 @@ def save(obj: Record, file: str | os.PathLike[str]) -> Path:
     >>> lu.load(file).size
     24
     """
-    document = next((d for kind, d in _DOCUMENTS.items() if isinstance(obj, kind)), None)
-    if document is None:
+    return write_whole(_design_file(file), text(obj))
+
+
+def text(obj: Record) -> str:
+    """What `save` writes into the file of `obj`; a ValueError as there."""
+    fields = document(obj).items()
+    lines = [f"{json.dumps(k)}: {json.dumps(v, allow_nan=False)}" for k, v in fields]
+    return "{\n" + ",\n".join(lines) + "\n}\n"
+
+
+def document(obj: Record) -> dict[str, Any]:
+    """The fields of the file of `obj` (docs/formats.md); a ValueError as from `save`."""
+    kind = next((d for kind, d in _DOCUMENTS.items() if isinstance(obj, kind)), None)
+    if kind is None:
         known = ", ".join(kind.__name__ for kind in _DOCUMENTS)
         raise ValueError(f"cannot save a {type(obj).__name__}; what can be saved: {known}")
     try:
-        fields = document.of(obj).model_dump()
+        return kind.of(obj).model_dump()
     except ValidationError as error:
         raise ValueError(f"cannot save this {type(obj).__name__}: {first_error(error)}") from None
-    lines = [f"{json.dumps(k)}: {json.dumps(v, allow_nan=False)}" for k, v in fields.items()]
-    return write_whole(_design_file(file), "{\n" + ",\n".join(lines) + "\n}\n")
 
 
 def load(file: str | os.PathLike[str]) -> Record:
@@ -94,8 +104,8 @@ def load(file: str | os.PathLike[str]) -> Record:
     if not file.is_file():
         raise FileNotFoundError(f"no file {file}")
     try:
-        text = file.read_bytes()
-        return _document_of(_Header.model_validate_json(text)).model_validate_json(text).record()
+        data = file.read_bytes()
+        return _document_of(_Header.model_validate_json(data)).model_validate_json(data).record()
     except ValidationError as error:
         raise ValueError(f"{file}: {first_error(error)}") from None
     except ValueError as error:

@@ -18,6 +18,8 @@ import folding
 import motion
 import paths
 import peers
+import slots
+import strength
 
 
 def run(*arguments, app=paths.app):
@@ -91,6 +93,21 @@ def test_folding_on_a_tiny_solid(tmp_path):
     assert medians["median_coverage"].tolist() == table["coverage"].tolist()
 
 
+def test_strength_on_a_tiny_solid(tmp_path):
+    chosen = ["--model", "duck", "--voxels", 40, "--moments", 3]
+    run(*chosen, "--out", tmp_path, "--pictures", tmp_path, app=strength.app)
+    table = pd.read_csv(tmp_path / "strength.csv")
+    assert table["how"].tolist() == list(strength.HOW) * 2
+    assert table["path"].tolist() == ["layered"] * 3 + ["growth"] * 3
+    assert (table["paper_kpa"] == 3.314).all()
+    path = lu.layered_path(lu.model("duck", voxels=40))
+    held = lu.strength(path, bonding="solid", held="-z")
+    assert table["tension_pa"][0] == pytest.approx(held.table["traction_pa"].max(), rel=1e-5)
+    assert "What the paper does not give" in (tmp_path / "strength.md").read_text()
+    assert pd.read_csv(tmp_path / "standing.csv")["move"].min() == 0
+    assert (tmp_path / "strength.png").stat().st_size > 1000
+
+
 def test_a_slow_method_ends(tmp_path):
     sizes = ["--voxels", 8, "--voxels", 40, "--voxels", 60]
     run("growth", *sizes, "--method", "refined", "--limit", 0, "--out", tmp_path)
@@ -148,3 +165,18 @@ def test_peers_find_paths_and_cp_sat_the_longest():
 @pytest.mark.parametrize("voxels", [8, 40, 1000, 30_000])
 def test_balls_have_about_the_size_asked_for(voxels):
     assert 0.7 * voxels <= paths.solid_of("ball", voxels).size <= voxels
+
+
+def test_slots_on_a_tiny_solid(tmp_path):
+    run("--solid", "ball", "--voxels", 60, "--out", tmp_path, app=slots.app)
+    table = pd.read_csv(tmp_path / "slots.csv").set_index("plan")
+    assert table["certified"].all()
+    assert (table["certified_slotted"] == (table["against"] == 0)).all()
+    free, anew, slotted = (
+        table.loc[p] for p in ("growth", "its path planned anew", "slotted growth")
+    )
+    assert free["against"] > 0
+    assert slotted["against"] == 0
+    assert anew["path"] == free["path"]
+    assert anew["share"] == anew["against"] / anew["moves"]
+    assert "| slotted growth" in (tmp_path / "slots.md").read_text()

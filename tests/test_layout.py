@@ -25,6 +25,7 @@ ORDER = [
         "solid",
         "kinematics",
         "joints",
+        "words",
         "notation",
         "judging",
     ),
@@ -32,7 +33,8 @@ ORDER = [
     *("visits", "reeb", "planar", "linking", "assumptions", "paper", "spatial", "refinement"),
     *("layered", "bounds", "subset_sums", "contraction"),
     *("motion", "folding", "trimming", "transformation", "scenarios"),
-    *("storage", "verification", "pipeline", "_sources", "engines", "sweep", "tables", "draw"),
+    *("stress", "storage", "verification", "pipeline", "_sources", "engines", "sweep", "tables"),
+    *("block", "draw", "viewer", "fabrication", "manual"),
     *("_progress", "cli"),
 ]
 

@@ -12,7 +12,7 @@ from typing import NoReturn
 
 import typer
 
-from . import chains, experiments
+from . import chains, experiments, films, kit, manual, playing, printing, strength
 from .experiments import EXPERIMENTS
 
 __all__ = ["EXPERIMENTS", "app", "main", "run"]
@@ -33,6 +33,12 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "voxelize": chains.voxelize,
     "path": chains.path,
     "unfold": chains.unfold,
+    "kit": kit.kit,
+    "animate": films.animate,
+    "play": playing.play,
+    "print": printing.print_chain,
+    "manual": manual.manual,
+    "strength": strength.strength,
     "sweep": experiments.sweep,
 }
 for name, command in COMMANDS.items():

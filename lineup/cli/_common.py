@@ -28,6 +28,7 @@ Box = Annotated[
     tuple[int, int, int] | None,
     typer.Option(help="Box that a motion from shape to shape stays in, X Y Z in pitches."),
 ]
+Joints = Annotated[str, typer.Option(help="free, or slotted: no printed capsule has to twist.")]
 Voxels = Annotated[int, typer.Option(help="Voxels to aim at; a stored solid keeps its own.")]
 Workers = Annotated[
     int | None, typer.Option(help="Processes at a time; as many as there are cores if not given.")

@@ -11,6 +11,7 @@ import typer
 from ._common import (
     Blocks,
     Box,
+    Joints,
     Out,
     Seed,
     Source,
@@ -33,6 +34,7 @@ def run_models(
     out: Out = Path("out"),
     seed: Seed = 0,
     within: Box = None,
+    joints: Joints = "free",
 ) -> None:
     """Fold one chain into models or meshes of your own, and each of them into each other."""
     from .. import tables
@@ -48,6 +50,7 @@ def run_models(
             blocks=blocks,
             seed=seed,
             ends=2 if within is None else 1,
+            joints=joints,
             folder=out,
             progress=reporter,
         )

@@ -9,12 +9,15 @@ from .files import save
 from .linkages import depths, projection, two_stages
 from .moments import unfolding
 from .plans import layers, reeb
+from .printed import block, slots
 from .regions import checkerboard, contraction, merge, planar_steps
 from .scenarios import run
 from .scenes import chain, contact_sheet, layering, solid
+from .strength import standing, strength
 
 __all__ = [
     "animation",
+    "block",
     "chain",
     "checkerboard",
     "contact_sheet",
@@ -29,7 +32,10 @@ __all__ = [
     "reeb",
     "run",
     "save",
+    "slots",
     "solid",
+    "standing",
+    "strength",
     "two_stages",
     "unfolding",
 ]

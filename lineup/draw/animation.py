@@ -3,45 +3,65 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable, Iterator
 from io import BytesIO
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from PIL import Image
 
-from ..grid import FloatArray
+from ..grid import FloatArray, IntArray
 from ..kinematics import frames
 from ..solid import Folding, Motion
+from ..transformation.reversal import TURNS
 from .files import whole
-from .moments import PANEL, moment_panel, told
+from .moments import PANEL, bends, moment_panel, told
 from .page import page
 from .view import View, view_of
 
+GIF_RATE, MP4_RATE = 6, 24
+"""Pictures a second, where their number is not given."""
+
 _DPI = 80
+_LINGER = 1.0  # seconds longer that the first and the last picture stay
+
+
+class _Moment(NamedTuple):
+    """A pose after so many moves, and what to say of it."""
+
+    pose: FloatArray
+    title: str
+    where: str
 
 
 def animation(
     motion: Folding | Motion,
     file: str | os.PathLike[str],
-    pictures: int = 64,
+    pictures: int | None = None,
     seconds: float = 10.0,
 ) -> Path:
-    """Write a motion as a GIF: the body near by, and the whole chain beside it.
+    """Write a motion as a film: the body near by, and the whole chain beside it.
 
-    The camera stays where it sees the folded start, or, past half of a motion that has a goal,
-    the folded end. The first and the last picture stay a second longer.
+    The camera stays where it sees the folded start. A motion from shape to shape is turned as a
+    whole on the straight line, so that either shape stands upright; one that never makes the line
+    is seen from where all of it is in sight.
 
     Parameters
     ----------
-    pictures : int
-        How many, at equal numbers of moves; moves are shown in between if there are few.
+    file : path
+        ``.gif``, or ``.mp4`` where the package `imageio-ffmpeg` is installed (extra `video`).
+    pictures : int, optional
+        How many, at equal numbers of moves; moves are shown in between if there are few. By
+        default 6 for each second of a GIF and 24 of an MP4.
     seconds : float
-        How long it runs, before it starts again.
+        How long it runs; the first and the last picture stay a second longer.
 
     Raises
     ------
     ValueError
-        If `pictures` is less than 2, `seconds` is not positive, or the file is no .gif.
+        If `pictures` is less than 2, `seconds` is not positive, the file is of another kind, or
+        an MP4 is asked for and cannot be made.
 
     Examples
     --------
@@ -51,36 +71,136 @@ def animation(
     >>> draw.animation(folding, tempfile.mkdtemp() + "/unfolds.gif", pictures=3).name
     'unfolds.gif'
     """
+    ending = Path(file).suffix.lower()
+    if ending not in (".gif", ".mp4"):
+        raise ValueError(f"a film is written as .gif or .mp4, got {Path(file).name!r}")
+    if pictures is None:
+        pictures = max(2, round(seconds * (GIF_RATE if ending == ".gif" else MP4_RATE)))
     if pictures < 2 or not seconds > 0:
         raise ValueError(f"a film needs 2 pictures and some time, got {pictures} and {seconds} s")
+    write = _gif if ending == ".gif" else _mp4()
     motion = motion.motion if isinstance(motion, Folding) else motion
-    shown = _moments(motion, pictures)
-    near = view_of(motion.start).widened(0.8)
-    far = view_of(shown[-1][1]).widened(0.8) if len(motion.goal) else near
-    film = [
-        _picture(motion, move, pose, near if k < len(shown) / 2 else far)
-        for k, (move, pose) in enumerate(shown)
-    ]
-    pause = round(1000 * seconds / len(film))
-    lasting = [pause] * len(film)
-    lasting[0] += 1000
-    lasting[-1] += 1000
-    with whole(file, ".gif") as part:
-        film[0].save(part, "GIF", save_all=True, append_images=film[1:], duration=lasting, loop=0)
+    film = (_picture(moment, view) for moment, view in _scenes(motion, pictures))
+    with whole(file, ending) as part:
+        write(part, film, seconds / pictures)
     return Path(file)
 
 
-def _moments(motion: Motion, pictures: int) -> list[tuple[int, FloatArray]]:
-    """Poses to show, each after how many moves: the first, the last, equally spaced between."""
+def _scenes(motion: Motion, pictures: int) -> Iterator[tuple[_Moment, View]]:
+    """Moments, the first, the last and those equally spaced between, each with its camera."""
+    shown, line = _shown(motion, pictures)
+    near = view_of(motion.start).widened(0.8)
+    if not len(motion.goal):
+        for move, pose in shown:
+            yield _Moment(pose, *told(motion, move, pose)), near
+    elif line is None:
+        wide = view_of(np.concatenate([pose for _, pose in shown]))
+        for move, pose in shown:
+            yield _Moment(pose, *_told_between(motion, move)), wide
+    else:
+        upright = _turn_to(motion.goal, shown[-1][1])
+        far = view_of(motion.goal).widened(0.8)
+        for move, pose in shown[:line]:
+            yield _Moment(pose, *told(motion, move, pose)), near
+        for move, pose in shown[line:]:
+            yield _Moment(_carried(pose, upright), *_told_after(motion, move, pose)), far
+
+
+def _shown(motion: Motion, pictures: int) -> tuple[list[tuple[int, FloatArray]], int | None]:
+    """Poses to show, each after how many moves, and the first of them that is not before the line.
+
+    None if the motion never comes to the straight line.
+    """
     substeps = max(1, (pictures - 1) // max(len(motion), 1))
     wanted = set(np.linspace(0, substeps * len(motion), pictures).astype(int).tolist())
-    poses = enumerate(frames(motion, substeps=substeps))
-    return [(k // substeps, pose) for k, pose in poses if k in wanted]
+    shown: list[tuple[int, FloatArray]] = []
+    line = None
+    for k, pose in enumerate(frames(motion, substeps=substeps)):
+        if line is None and not bends(pose):
+            line = len(shown)
+        if k in wanted:
+            shown.append((k // substeps, pose))
+    return shown, line
 
 
-def _picture(motion: Motion, move: int, pose: FloatArray, view: View) -> Image.Image:
+class _Turn(NamedTuple):
+    """The rotation about one point that is then carried to another."""
+
+    rotation: FloatArray
+    origin: FloatArray
+    target: FloatArray
+
+
+def _turn_to(goal: IntArray, last: FloatArray) -> _Turn:
+    bars, wanted = np.diff(last, axis=0), np.diff(goal, axis=0)
+    off = [np.abs(bars @ turn.T - wanted).sum() for turn in TURNS]
+    return _Turn(TURNS[int(np.argmin(off))].astype(float), last[0], goal[0].astype(float))
+
+
+def _carried(pose: FloatArray, turn: _Turn) -> FloatArray:
+    carried: FloatArray = (pose - turn.origin) @ turn.rotation.T + turn.target
+    return carried
+
+
+def _told_after(motion: Motion, move: int, pose: FloatArray) -> tuple[str, str]:
+    """What to say of a pose between the straight line and the goal."""
+    share = bends(pose) / max(bends(motion.goal), 1)
+    where = f"after move {move:,} of {len(motion):,}"
+    if share == 0:
+        return "straight", where
+    done = move == len(motion)
+    return ("folded anew" if done else f"{100 * share:.0f} % folded anew"), where
+
+
+def _told_between(motion: Motion, move: int) -> tuple[str, str]:
+    """What to say of a motion from shape to shape that is never straight."""
+    title = {0: "folded", len(motion): "folded anew"}.get(move, "from shape to shape")
+    return title, f"after move {move:,} of {len(motion):,}"
+
+
+def _picture(moment: _Moment, view: View) -> Image.Image:
     figure = page(*PANEL)
-    moment_panel(figure, pose, view, *told(motion, move, pose))
+    moment_panel(figure, moment.pose, view, moment.title, moment.where)
     drawn = BytesIO()
     figure.savefig(drawn, format="png", dpi=_DPI)
-    return Image.open(drawn).convert("RGB").quantize(96, dither=Image.Dither.NONE)
+    return Image.open(drawn).convert("RGB")
+
+
+def _gif(part: Path, film: Iterator[Image.Image], pause: float) -> None:
+    few = [picture.quantize(96, dither=Image.Dither.NONE) for picture in film]
+    lasting = [round(1000 * pause)] * len(few)
+    lasting[0] += round(1000 * _LINGER)
+    lasting[-1] += round(1000 * _LINGER)
+    few[0].save(part, "GIF", save_all=True, append_images=few[1:], duration=lasting, loop=0)
+
+
+def _mp4() -> Callable[[Path, Iterator[Image.Image], float], None]:
+    """A writer of MP4 files, once it is clear that there can be one."""
+    try:
+        from imageio_ffmpeg import write_frames
+    except ImportError:
+        raise ValueError(
+            "an MP4 takes the package imageio-ffmpeg (pip install 'lineup-workbench[video]'); "
+            "a .gif can be written without it"
+        ) from None
+
+    def write(part: Path, film: Iterator[Image.Image], pause: float) -> None:
+        sink, last = None, b""
+        for picture in film:
+            size = (picture.width - picture.width % 2, picture.height - picture.height % 2)
+            last = np.asarray(picture.crop((0, 0, *size))).tobytes()
+            if sink is None:
+                options = ["-f", "mp4", "-movflags", "+faststart", "-fflags", "+bitexact"]
+                sink = write_frames(
+                    str(part), size, fps=1 / pause, output_params=options, macro_block_size=2
+                )
+                sink.send(None)
+                for _ in range(round(_LINGER / pause)):
+                    sink.send(last)
+            sink.send(last)
+        assert sink is not None  # a film has two pictures or more
+        for _ in range(round(_LINGER / pause)):
+            sink.send(last)
+        sink.close()
+
+    return write

@@ -18,8 +18,9 @@ from matplotlib.figure import Figure
 from scipy import ndimage
 
 from ..grid import FloatArray
-from .view import Body, Capsules, Cubes, Pixels, View
+from .view import Body, Capsules, Cubes, Pixels, Triangles, View
 
+_EDGE_DEG = 30.0  # an edge of a mesh is sharp if its faces turn by more
 _OVERSAMPLING = 2  # smooths edges at a tenth of the price of VTK's multisampling in software
 
 
@@ -89,6 +90,11 @@ def _by_vtk(bodies: Sequence[Body], view: View, width: int, height: int) -> Pixe
 def _meshes(body: Body) -> Iterator[Any]:
     import pyvista
 
+    if isinstance(body, Triangles):
+        mesh = pyvista.PolyData.from_regular_faces(body.vertices, body.faces.astype(int))
+        mesh["rgb"] = body.rgb
+        yield mesh.compute_normals(split_vertices=True, feature_angle=_EDGE_DEG)
+        return
     if isinstance(body, Cubes):
         points = pyvista.PolyData(body.centre)
         points["rgb"] = body.rgb
@@ -183,7 +189,9 @@ def _by_matplotlib(bodies: Sequence[Body], view: View, width: int, height: int) 
     axes.set_ylim(-view.half_height, view.half_height)
     points_a_voxel = 72 * height / 100 / (2 * view.half_height)
     for body in bodies:
-        if isinstance(body, Cubes):
+        if isinstance(body, Triangles):
+            _paint_triangles(axes, body, view)
+        elif isinstance(body, Cubes):
             _paint_cubes(axes, body, view)
         else:
             _paint_capsules(axes, body, view, points_a_voxel)
@@ -219,3 +227,16 @@ def _paint_cubes(axes: Any, body: Cubes, view: View) -> None:
     shade = np.array([0.8, 0.65, 1.0])[None, :, None]
     colour = (body.rgb[order, None] / 255 * shade).reshape(-1, 3)
     axes.add_collection(PolyCollection(list(outlines), facecolors=colour, edgecolors=colour * 0.7))
+
+
+def _paint_triangles(axes: Any, body: Triangles, view: View) -> None:
+    """The faces that look at the camera, the brighter the more they look up and to it."""
+    corners = view.seen(body.vertices)[body.faces]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
+    order = np.argsort(corners[:, :, 2].mean(axis=1), kind="stable")
+    order = order[normal[order, 2] > 0]
+    light = 0.45 + 0.55 * np.clip(normal[order] @ (-0.3, 0.5, 0.81), 0, 1)
+    colour = light[:, None] * body.rgb[body.faces[order, 0]] / 255
+    outlines = list(corners[order, :, :2])
+    axes.add_collection(PolyCollection(outlines, facecolors=colour, edgecolors=colour, lw=0.4))

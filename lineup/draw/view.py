@@ -8,7 +8,7 @@ import matplotlib
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..grid import BoolArray, FloatArray
+from ..grid import BoolArray, FloatArray, IntArray
 
 Pixels = NDArray[np.uint8]
 
@@ -58,7 +58,27 @@ class Cubes:
         return Cubes(self.centre[kept], self.rgb[kept], self.edge)
 
 
-Body = Capsules | Cubes
+@dataclass(frozen=True)
+class Triangles:
+    """A triangle mesh: (n, 3) vertices and their colours, (m, 3) faces."""
+
+    vertices: FloatArray
+    faces: IntArray
+    rgb: Pixels
+
+    def __len__(self) -> int:
+        return len(self.faces)
+
+    @property
+    def points(self) -> FloatArray:
+        return self.vertices
+
+    def inside(self, view: View, aspect: float) -> Triangles:
+        """All of it: a mesh is drawn whole."""
+        return self
+
+
+Body = Capsules | Cubes | Triangles
 
 
 @dataclass(frozen=True)

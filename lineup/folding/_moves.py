@@ -11,7 +11,8 @@ from numpy.random import Generator
 
 from .._jit import kernel
 from ..grid import BoolArray, IntArray
-from ..motion._chain import Grid
+from ..motion._chain import Grid, link
+from ..motion._slots import plan_keeps_slots
 from ._fold import BACK, NEXT, RANK, Fold, commit, load, n_joints, path_of, root_of, states_of, undo
 from ._piece import replace
 
@@ -147,11 +148,18 @@ def _adjacent(grid: Grid, cell: int, other: int) -> bool:
 
 
 @kernel
-def contract_all(fold: Fold, keep: BoolArray, length: int, longest: int, in_layer: bool) -> None:
+def contract_all(
+    fold: Fold,
+    keep: BoolArray,
+    length: int,
+    longest: int,
+    in_layer: bool,
+    slotted: bool = False,
+) -> None:
     """Contract pairs of index up to `longest` down to `length`, none with a voxel to `keep`.
 
-    The joints between two may go where the two are adjacent and a plan remains, and if asked
-    for, where all of them lie in one layer.
+    The joints between two may go where the two are adjacent and a plan remains, if asked for one
+    for `slotted` joints, and if asked for where all of them lie in one layer.
     """
     changed = True
     while changed and n_joints(fold) > length:
@@ -159,13 +167,15 @@ def contract_all(fold: Fold, keep: BoolArray, length: int, longest: int, in_laye
         joint = fold.notes[NEXT, root_of(fold)]
         while joint != root_of(fold) and n_joints(fold) > length:
             index = min(longest, n_joints(fold) - length)
-            changed |= _contract_from(fold, keep, joint, index, in_layer)
+            changed |= _contract_from(fold, keep, joint, index, in_layer, slotted)
             commit(fold)
             joint = fold.notes[NEXT, joint]
 
 
 @kernel
-def _contract_from(fold: Fold, keep: BoolArray, u: int, longest: int, in_layer: bool) -> bool:
+def _contract_from(
+    fold: Fold, keep: BoolArray, u: int, longest: int, in_layer: bool, slotted: bool
+) -> bool:
     """Contract the pair of least index that begins at joint u, if there is one."""
     xyz, onward, root = fold.grid.xyz, fold.notes[NEXT], root_of(fold)
     v = onward[u]
@@ -177,8 +187,15 @@ def _contract_from(fold: Fold, keep: BoolArray, u: int, longest: int, in_layer: 
         if v == root or (in_layer and xyz[v, 2] != xyz[u, 2]):
             return False
         if _adjacent(fold.grid, u, v) and replace(fold, u, v, np.empty(0, np.int32)):
-            return True
+            if not slotted or _keeps_slots(fold):
+                return True
+            undo(fold)
     return False
+
+
+@kernel
+def _keeps_slots(fold: Fold) -> bool:
+    return plan_keeps_slots(fold.grid, link(fold.grid, path_of(fold)), states_of(fold))
 
 
 @kernel

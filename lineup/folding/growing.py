@@ -17,6 +17,7 @@ from ..motion.plan import BOTH_ENDS, left_folded, motion_of, peel_plan
 from ..solid import Folding, VoxelPath, VoxelSolid
 from ._fold import NEVER, Body, Fold, load, new_fold, path_of, states_of
 from ._moves import anneal, fill, random_shortest
+from .slotting import slotted
 
 SURFACE_WORTH = 1.5
 HOT, COLD = 0.6, 0.1  # worth lost with likelihood 1/e, at first and at last
@@ -40,19 +41,22 @@ def straightenable(
     rng: np.random.Generator,
     only: int = BOTH_ENDS,
     tries: int = 400,
+    joints: str = "free",
 ) -> tuple[IntArray, IntArray]:
     """A path with a complete peel plan, got from `cells` by shortcuts where the plan gets stuck.
 
     A shortcut pays if it frees eight joints more than it costs; short ones are tried first. If
     the tries run out, only the first bar of the path is left, which is always straight.
     """
-    plans = [peel_plan(grid, cells, rng, bias=bias, only=only) for bias in 2 * BIASES]
+    plans = [
+        peel_plan(grid, cells, rng, bias=bias, only=only, joints=joints) for bias in 2 * BIASES
+    ]
     states, length = min(plans, key=left_folded), 4
     for _ in range(0, tries, 4):
         left = left_folded(states)
         if left <= 1:
             return cells, states
-        cuts = [_cut(grid, cells, states, length, only, rng) for _ in range(4)]
+        cuts = [_cut(grid, cells, states, length, only, rng, joints) for _ in range(4)]
         paying = [
             (path, plan)
             for path, plan in cuts
@@ -71,6 +75,7 @@ def _cut(
     length: int,
     only: int,
     rng: np.random.Generator,
+    joints: str,
 ) -> tuple[IntArray, IntArray]:
     """Shortcut some `length` folded cells near one stuck end; the shorter path and a plan of it.
 
@@ -88,7 +93,14 @@ def _cut(
     former = states + np.array([0, len(shorter) - len(cells), 0, 0], np.int32)
     bias = float(rng.choice(BIASES))
     more = peel_plan(
-        grid, shorter, rng, starts=former[-RESUMED:], patience=1000, bias=bias, only=only
+        grid,
+        shorter,
+        rng,
+        starts=former[-RESUMED:],
+        patience=1000,
+        bias=bias,
+        only=only,
+        joints=joints,
     )
     resumed = int(np.flatnonzero((former == more[0]).all(axis=1))[0])
     return shorter, np.concatenate([former[:resumed], more])
@@ -103,6 +115,8 @@ def growth(
     trial_rounds: int | None = None,
     rounds: int | None = None,
     ends: int = 2,
+    joints: str = "free",
+    slot_rounds: int = 60,
     progress: Callable[[float], None] | None = None,
 ) -> Folding:
     """Grow a fold from each start, and the best of them for longer.
@@ -119,16 +133,22 @@ def growth(
     ends : int
         How many ends of the chain may let go; with 1 it is the last, and the motion can be made
         within a box (`transform`).
+    joints : str
+        With ``"slotted"`` no move of the motion is against the slots of the printed block
+        (`lineup.joints`); the path is then mended up to `slot_rounds` times (`slotting`).
     progress : function, optional
         Told the share of the work done, 0 to 1.
     """
     trial_rounds = _so_many(TRIAL_ROUNDS, solid) if trial_rounds is None else trial_rounds
     rounds = _so_many(ROUNDS, solid) if rounds is None else rounds
-    for name, value in (("trial_rounds", trial_rounds), ("rounds", rounds)):
+    efforts = (("trial_rounds", trial_rounds), ("rounds", rounds), ("slot_rounds", slot_rounds))
+    for name, value in efforts:
         if value < 0:
             raise ValueError(f"{name} must not be negative, got {value}")
     if ends not in (1, 2):
         raise ValueError(f"ends must be 1 or 2, got {ends}")
+    if joints not in ("free", "slotted"):
+        raise ValueError(f"unknown joints {joints!r}; known: free, slotted")
     only = BOTH_ENDS if ends == 2 else 1
     rng = np.random.default_rng(seed)
     grid, body = body_of(solid)
@@ -136,7 +156,8 @@ def growth(
     starts = _checked_starts(solid, paths) or [_exposed_bar(solid)]
     target = NEVER if length is None else length
     report = progress or (lambda share: None)
-    work = len(starts) * trial_rounds + rounds
+    slot_rounds = slot_rounds if joints == "slotted" else 0
+    work = len(starts) * trial_rounds + rounds + slot_rounds * BATCH
     best: Fold | None = None
     for k, start in enumerate(starts):
         fold = _grown(grid, body, cells_of(start, solid.occupancy.shape), only, rng, target)
@@ -147,17 +168,31 @@ def growth(
     assert best is not None  # there is at least one start
     spent = len(starts) * trial_rounds
     _deepen(best, only, rng, rounds, target, lambda done: report((spent + done) / work))
-    return folding_of(solid, grid, best, "growth")
+    if joints == "slotted":
+        spent += rounds
+        path, states = slotted(
+            best,
+            lambda cells, tries: straightenable(grid, cells, rng, only, tries, joints),
+            only,
+            rng,
+            slot_rounds,
+            target,
+            lambda done: report((spent + done * BATCH) / work),
+        )
+        load(best, path, states)
+    return folding_of(solid, grid, best, "growth", joints)
 
 
-def folding_of(solid: VoxelSolid, grid: Grid, fold: Fold, method: str) -> Folding:
+def folding_of(
+    solid: VoxelSolid, grid: Grid, fold: Fold, method: str, joints: str = "free"
+) -> Folding:
     """The path and the motion that a fold stands for."""
     path = path_of(fold)
     inside = np.pad(solid.occupancy, 1).ravel()
     inside[path] = False
     dropped = grid.xyz[np.flatnonzero(inside)]
     voxels = grid.xyz[path]
-    motion = motion_of(voxels, states_of(fold))
+    motion = motion_of(voxels, states_of(fold), joints)
     return Folding(VoxelPath(voxels, dropped=dropped, method=method), motion)
 
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from ..contraction import END, PAIR, occupancy_of, shortened_path, without
 from ..grid import BoolArray, IntArray, surface
+from ..joints import slot_violations
 from ..motion import unfold
 from ..motion._chain import box_grid, cells_of
 from ..motion.plan import has_peel_plan, motion_of, states_of
@@ -18,28 +19,31 @@ def shortened_folding(folding: Folding, length: int, keep: BoolArray | None = No
     """A folding cut down to `length` voxels; those to keep, or the surface, go if they must.
 
     A motion of peels and swings keeps a valid plan, and a chain that is pulled out still can be;
-    any other path is unfolded anew. The order in which voxels go is that of `trimming.trim`.
+    any other path is unfolded anew. A motion that keeps to the slots of the printed block still
+    does. The order in which voxels go is that of `trimming.trim`.
     """
+    slotted = len(folding.path) % 2 == 0 and not len(slot_violations(folding.motion))
+    joints = "slotted" if slotted else "free"
     occupancy = occupancy_of(folding.path)
     keep = surface(occupancy) if keep is None else keep
     if not has_peel_plan(folding.motion):
         if is_pulled(folding.motion):
             return shortened_pulled(folding, length, keep)
         path = shortened_path(folding.path, length, keep)
-        return Folding(path, unfold(path))
+        return Folding(path, unfold(path, joints=joints))
     grid, cells = box_grid(occupancy.shape), cells_of(folding.path.voxels, occupancy.shape)
     inside = np.isin(np.arange(len(grid.outside)), cells)
     fold = new_fold(grid, Body(inside, np.ones(len(inside))), cells, states_of(folding.motion))
     kept = np.pad(keep, 1).ravel()
     nothing = np.zeros_like(kept)
     in_layer = len(folding.path.visits) > 0
-    contract_all(fold, kept, length, 2, in_layer)
-    contract_all(fold, kept, length, len(cells), in_layer)
+    contract_all(fold, kept, length, 2, in_layer, slotted)
+    contract_all(fold, kept, length, len(cells), in_layer, slotted)
     _cut_ends(fold, kept, length, free=True)
-    contract_all(fold, nothing, length, 2, in_layer)
+    contract_all(fold, nothing, length, 2, in_layer, slotted)
     _cut_ends(fold, kept, length, free=False)
     path = _told(folding.path, np.isin(cells, path_of(fold)), keep)
-    return Folding(path, motion_of(path.voxels, plan_of(fold)))
+    return Folding(path, motion_of(path.voxels, plan_of(fold), joints))
 
 
 def _cut_ends(fold: Fold, kept: BoolArray, length: int, *, free: bool) -> None:

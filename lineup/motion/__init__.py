@@ -6,6 +6,7 @@ from typing import Any
 
 from .._options import checked
 from .._record import of_kind
+from ..joints import slot_violations
 from ..solid import Motion, VoxelPath
 from .algorithm4 import energy
 from .peeling import check_efforts, peel
@@ -22,13 +23,15 @@ def unfold(path: VoxelPath, method: str = "auto", seed: int = 0, **options: Any)
     method : str
         A key of `MOTION_METHODS`. ``"accordion"`` straightens a monotone path in one move;
         ``"peel"`` searches for an order in which the two ends let go of bar after bar, after
-        limbs have moved out of the way if need be; its options are `tries`, `patience` and
-        `rounds`. ``"pull"`` draws the chain out along its own track, for thinner bars, see
-        `Motion.diameter` and `max_bend_deg`. ``"energy"`` is the paper's Algorithm 4, with options
-        `axis` of projection and `steps`: it keeps no width and stops at `stationary` points or
-        the step limit; ``"barrier"`` unfolds the same projection with bars of a given `diameter`,
-        over the `axes` in turn, each for at most so many `steps`. ``"auto"`` peels where the
-        accordion cannot, and pulls where peeling cannot if its option `thin` allows thinner bars.
+        limbs have moved out of the way if need be; its options are `tries`, `patience`, `rounds`
+        and `joints`: ``"slotted"`` leaves out what the slots of the printed block do not let the
+        chain do, ``"sparing"`` does it where nothing else helps. ``"pull"`` draws the chain out
+        along its own track, for thinner bars, see `Motion.diameter` and `max_bend_deg`.
+        ``"energy"`` is the paper's Algorithm 4, with options `axis` of projection and `steps`: it
+        keeps no width and stops at `stationary` points or the step limit; ``"barrier"`` unfolds
+        the same projection with bars of a given `diameter`, over the `axes` in turn, each for at
+        most so many `steps`. ``"auto"`` peels where the accordion cannot, and pulls where peeling
+        cannot if its option `thin` allows thinner bars.
     seed : int
         The same path, seed and options give the same motion.
 
@@ -66,17 +69,22 @@ def _auto(
     patience: int = 5_000,
     rounds: int = 100,
     thin: bool = False,
+    joints: str = "free",
 ) -> Motion:
-    """The first method of accordion, peel and, if bars may be `thin`, pull that ends straight."""
-    check_efforts(tries, patience, rounds)
+    """The first method of accordion, peel and, if bars may be `thin`, pull that ends straight.
+
+    Unless `joints` are free the accordion, which turns all bars at once, counts where it twists no
+    capsule, and nothing is pulled.
+    """
+    check_efforts(tries, patience, rounds, joints)
     tilted = accordion(path, seed)
-    if tilted.straight:
+    if tilted.straight and (joints == "free" or not len(slot_violations(tilted))):
         return replace(tilted, reason="straight: accordion, since the path is monotone")
-    peeled = peel(path, seed, tries=tries, patience=patience, rounds=rounds)
+    peeled = peel(path, seed, tries=tries, patience=patience, rounds=rounds, joints=joints)
     if peeled.straight:
         return replace(peeled, reason=f"{peeled.reason}: peel, since the path is not monotone")
     why = f"peel is {peeled.reason}"
-    if thin:
+    if thin and joints == "free":
         pulled = pull(path, seed)
         if pulled.straight:
             return replace(pulled, reason=f"straight: pull, since {why}")

@@ -78,6 +78,12 @@ def _nearer(joint: int, k: int, nearest: IntArray) -> None:
 
 
 @kernel
+def has_rod(state: IntArray, end: int, n: int) -> bool:
+    """Whether `end` of a chain of n joints has let go of a joint."""
+    return state[end] != (n - 1) * end
+
+
+@kernel
 def ray_blocker(chain: Chain, end: int, k: int, d: int) -> int:
     """The joint nearest to k, on the inward side of `end`, that lies on the ray from k along d."""
     return chain.ray[end, k, d]

@@ -107,18 +107,21 @@ def open_pose(voxels: IntArray, room: int) -> Pose:
 
 
 @kernel
-def open_up(pose: Pose, arcs: Arcs, proposals: int, heat: float, rng: Generator) -> IntArray:
+def open_up(
+    pose: Pose, arcs: Arcs, proposals: int, heat: float, rng: Generator, slotted: bool = False
+) -> IntArray:
     """Make random limb moves, (K, 4) rows of `Motion.moves`, that leave the pose less dense.
 
     What is counted are contacts, pairs of joints a step apart. A move that is clear is made if it
-    takes some away; if it adds c or none, then with likelihood exp(-(c + TOLL) / heat).
+    takes some away; if it adds c or none, then with likelihood exp(-(c + TOLL) / heat). With
+    `slotted` joints none is made that twists a capsule.
     """
     rows = np.empty((proposals, 4), np.int32)
     moved = np.empty_like(pose.place)
     count = 0
     for _ in range(proposals):
         limb = propose(pose, rng)
-        if limb.kind < 0 or not put(pose, limb, moved):
+        if limb.kind < 0 or (slotted and twists(pose, limb)) or not put(pose, limb, moved):
             continue
         more = _contacts(pose, limb, moved) - _contacts(pose, limb, pose.place)
         wanted = more < 0 or rng.random() < np.exp(-(more + TOLL) / heat)
@@ -184,6 +187,20 @@ def _frame(pose: Pose, limb: Limb) -> tuple[int, int, int, int]:
     if limb.kind == _DOOR:
         return (along + 1) % 3, (along + 2) % 3, 1, forward * limb.value
     return along, limb.value % 3, forward, 1 if limb.value < 3 else -1
+
+
+@kernel
+def twists(pose: Pose, limb: Limb) -> bool:
+    """Whether a limb's move twists a capsule between two bent joints, see `lineup.joints`."""
+    e, d, _, _ = _frame(pose, limb)
+    height, n = pose.place[:, 3 - e - d], len(pose.place)
+    for hinge in (limb.joint, limb.other):
+        k = hinge - 1 + hinge % 2  # the capsule
+        if 0 < hinge < n - 1 and (hinge == limb.joint or limb.kind != _SWING):
+            lies_along = height[k] != height[k + 1]
+            if lies_along and height[k - 1] == height[k] and height[k + 1] == height[k + 2]:
+                return True
+    return False
 
 
 @kernel

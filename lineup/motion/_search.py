@@ -16,15 +16,23 @@ from ._chain import (
     INWARD,
     Chain,
     Grid,
+    has_rod,
     quadrant_blocker,
     ray_blocker,
     ray_meets_quadrant,
     rays_meet,
 )
+from ._slots import FREE, SPARING, peels_at_once, twisted_by_swing
+
+STEPS = 24
 
 
 class Frontier(NamedTuple):
-    """Open states in buckets by b - a, last in first out; a state is entered once."""
+    """Open states in buckets by b - a, last in first out; a state is entered once.
+
+    Beside them wait steps that would twist a capsule, as numbers STEPS * state + 6 * end + f for a
+    swing to direction f, and 12 more than that with f = 0 for a peel.
+    """
 
     state: IntArray  # (N, 4)
     parent: IntArray  # (N,) -1 for a start
@@ -33,12 +41,8 @@ class Frontier(NamedTuple):
     top: IntArray  # (n,) the state on top of each bucket, -1 where it is empty
     seen: IntArray  # (H,) hash table of states entered, -1 where free
     size: IntArray  # (1,) number of states entered
-
-
-@kernel
-def has_rod(state: IntArray, end: int, n: int) -> bool:
-    """Whether `end` of a chain of n joints has let go of a joint."""
-    return state[end] != (n - 1) * end
+    held: IntArray  # (n,) for each bucket, the last of its states' steps that wait, -1 for none
+    under: IntArray  # (STEPS N,) the one before it
 
 
 @kernel
@@ -108,6 +112,7 @@ def search(
     bias: float,
     only: int,
     rng: Generator,
+    slots: int = FREE,
 ) -> IntArray:
     """The plan that leaves the fewest joints folded, (K, 4) states from a start to the best met.
 
@@ -120,17 +125,23 @@ def search(
         Probability that end 0 peels before end 1; near 0 or 1 one end does most of the work.
     only : int
         The one end that may peel, -1 for both.
+    slots : int
+        FREE, SLOTTED or SPARING (`_slots`). When a sparing search has no more patience, it lets
+        that step happen which twists a capsule where the fewest joints are folded, and goes on.
     """
     frontier = _open(len(chain.cell), budget)
     for k in rng.permutation(len(starts)):
         _enter(frontier, starts[k], -1)
     best, least = 0, len(chain.cell)
     expanded, progress, gap = 0, 0, 0
-    while expanded - progress <= patience and frontier.size[0] + 24 < budget:
+    while frontier.size[0] + 24 < budget:
         while gap < len(chain.cell) and frontier.top[gap] < 0:
             gap += 1
-        if gap == len(chain.cell):
-            break
+        if gap == len(chain.cell) or expanded - progress > patience:
+            gap = _let_happen(frontier)
+            if gap < 0:
+                break
+            progress = expanded
         node = frontier.top[gap]
         expanded += 1
         if gap < least:
@@ -139,10 +150,10 @@ def search(
                 break
         if frontier.peeled[node]:
             frontier.top[gap] = frontier.below[node]
-            _enter_swings(grid, chain, frontier, node, rng)
+            _enter_swings(grid, chain, frontier, node, rng, slots)
         else:
             frontier.peeled[node] = 1
-            gap = _enter_peels(grid, chain, frontier, node, rng.random() < bias, only)
+            gap = _enter_peels(grid, chain, frontier, node, rng.random() < bias, only, slots)
     return _trail(frontier, best)
 
 
@@ -159,6 +170,8 @@ def _open(n: int, budget: int) -> Frontier:
         np.full(n, -1, np.int32),
         np.full(size, -1, np.int32),
         np.zeros(1, np.int32),
+        np.full(n, -1, np.int32),
+        np.empty(STEPS * budget, np.int32),
     )
 
 
@@ -194,7 +207,13 @@ def _slot(frontier: Frontier, state: IntArray) -> int:
 
 @kernel
 def _enter_peels(
-    grid: Grid, chain: Chain, frontier: Frontier, node: int, front_first: bool, only: int
+    grid: Grid,
+    chain: Chain,
+    frontier: Frontier,
+    node: int,
+    front_first: bool,
+    only: int,
+    slots: int = FREE,
 ) -> int:
     """Enter the peels of a state, the preferred end on top; the bucket to look at next."""
     gap = frontier.state[node, 1] - frontier.state[node, 0]
@@ -203,33 +222,73 @@ def _enter_peels(
         end = 1 - turn if front_first else turn
         state = frontier.state[node].copy()
         if only in (-1, end) and may_peel(grid, chain, state, end):
-            state[end] += INWARD[end]
-            if _enter(frontier, state, node):
-                nearest = gap - 1
+            n_joints = 1 if slots == FREE else peels_at_once(grid, chain, state, end)
+            state[end] += n_joints * INWARD[end]
+            if n_joints > 0 and _enter(frontier, state, node):
+                nearest = min(nearest, gap - n_joints)
+            elif n_joints == 0 and slots == SPARING:
+                _hold(frontier, gap, STEPS * node + 12 + 6 * end)
     return nearest
 
 
 @kernel
-def _enter_swings(grid: Grid, chain: Chain, frontier: Frontier, node: int, rng: Generator) -> None:
+def _hold(frontier: Frontier, gap: int, step: int) -> None:
+    frontier.under[step] = frontier.held[gap]
+    frontier.held[gap] = step
+
+
+@kernel
+def _let_happen(frontier: Frontier) -> int:
+    """Enter what one of the steps that wait leads to, and its bucket; -1 if none waits."""
+    for gap in range(len(frontier.held)):
+        while frontier.held[gap] >= 0:
+            step = frontier.held[gap]
+            frontier.held[gap] = frontier.under[step]
+            node = step // STEPS
+            peels, end, f = step % STEPS // 12, step % 12 // 6, step % 6
+            state = frontier.state[node].copy()
+            if peels:
+                state[end] += INWARD[end]
+            else:
+                state[2 + end] = f
+            if _enter(frontier, state, node):
+                return gap - peels
+    return -1
+
+
+@kernel
+def _enter_swings(
+    grid: Grid, chain: Chain, frontier: Frontier, node: int, rng: Generator, slots: int = FREE
+) -> None:
     first = int(rng.integers(0, 12))
     for turn in range(12):
         end, f = divmod((turn + first) % 12, 6)
         state = frontier.state[node].copy()
         if may_swing(grid, chain, state, end, f):
+            if slots != FREE and twisted_by_swing(grid, chain, state, end, f):
+                if slots == SPARING:
+                    _hold(frontier, state[1] - state[0], STEPS * node + 6 * end + f)
+                continue
             state[2 + end] = f
             _enter(frontier, state, node)
 
 
 @kernel
 def _trail(frontier: Frontier, node: int) -> IntArray:
-    """The states from a start to `node`."""
-    length = 0
+    """The states from a start to `node`; of two joints let go at once, the first comes first."""
+    state, parent = frontier.state, frontier.parent
+    length = 1
     k = node
-    while k >= 0:
-        length += 1
-        k = frontier.parent[k]
+    while parent[k] >= 0:
+        length += max(np.abs(state[k, :2] - state[parent[k], :2]).sum(), 1)
+        k = parent[k]
     trail = np.empty((length, 4), np.int32)
-    for row in range(length - 1, -1, -1):
-        trail[row] = frontier.state[node]
-        node = frontier.parent[node]
+    row = length - 1
+    while row >= 0:
+        trail[row] = state[node]
+        row -= 1
+        node = parent[node]
+        if node >= 0 and np.abs(state[node, :2] - trail[row + 1, :2]).sum() == 2:
+            trail[row] = (state[node] + trail[row + 1]) // 2
+            row -= 1
     return trail

@@ -10,11 +10,12 @@ import numpy as np
 from numpy.random import Generator
 
 from ..grid import LETTERS, IntArray
+from ..joints import slot_violations
 from ..solid import Motion, VoxelPath
 from ._chain import INWARD, Grid, box_grid, cells_of, link
 from ._limbs import arcs, open_pose, open_up
 from ._search import may_peel
-from .plan import left_folded, motion_of, path_grid, peel_plan
+from .plan import JOINTS, left_folded, motion_of, path_grid, peel_plan
 
 BIASES = (0.02, 0.98, 0.5)
 ROOM = 48
@@ -32,7 +33,13 @@ HASTE = 5
 
 
 def peel(
-    path: VoxelPath, seed: int, *, tries: int = 4, patience: int = 5_000, rounds: int = 100
+    path: VoxelPath,
+    seed: int,
+    *,
+    tries: int = 4,
+    patience: int = 5_000,
+    rounds: int = 100,
+    joints: str = "free",
 ) -> Motion:
     """The best of several searches for a motion of peels and swings, the pose opened if need be.
 
@@ -47,20 +54,42 @@ def peel(
     rounds : int
         Times that limbs are moved to open the pose, and the search is run again; with 0 the
         motion has no doors, and only straight ends move.
+    joints : str
+        ``"slotted"`` leaves out moves that the slots of the printed block do not let the chain
+        make (`lineup.joints`); ``"sparing"`` makes as few of them as it finds, and says how many.
     """
-    check_efforts(tries, patience, rounds)
+    check_efforts(tries, patience, rounds, joints)
+    if joints != "free" and len(path) % 2:
+        raise ValueError(f"{joints} joints are of blocks of two voxels, got {len(path)} voxels")
     rng = np.random.default_rng(seed)
     grid, cells = path_grid(path.voxels)
-    states = _best_plan(grid, cells, rng, tries, patience)
-    plain = motion_of(path.voxels, states)
-    if plain.straight or rounds == 0 or len(path) < 4:
-        return plain
-    opened = _opened(path.voxels, rng, rounds, max(1, patience // HASTE))
-    return opened if opened.straight else plain
+    found: list[tuple[int, int, IntArray]] = []
+    for k in range(tries):
+        bias = BIASES[k % len(BIASES)]
+        states = peel_plan(grid, cells, rng, patience=patience, bias=bias, joints=joints)
+        faults = _faults(motion_of(path.voxels, states, joints)) if joints == "sparing" else 0
+        found.append((left_folded(states), faults, states))
+        if found[-1][:2] <= (1, 0):
+            break
+    best = motion_of(path.voxels, min(found, key=lambda plan: plan[:2])[2], joints)
+    if not (best.straight or rounds == 0 or len(path) < 4):
+        opened = _opened(path.voxels, rng, rounds, max(1, patience // HASTE), joints)
+        best = opened if opened.straight else best
+    if joints != "sparing":
+        return best
+    told = f"{best.reason}, {_faults(best)} of {len(best)} moves against the slots"
+    return replace(best, reason=told)
 
 
-def check_efforts(tries: int, patience: int, rounds: int) -> None:
-    """Raise a ValueError if an option of `peel` is too small."""
+def _faults(motion: Motion) -> int:
+    """Moves against the slots."""
+    return len(np.unique(slot_violations(motion)[:, 0]))
+
+
+def check_efforts(tries: int, patience: int, rounds: int, joints: str = "free") -> None:
+    """Raise a ValueError if an option of `peel` is too small, or the joints are unknown."""
+    if joints not in JOINTS:
+        raise ValueError(f"unknown joints {joints!r}; known: {', '.join(JOINTS)}")
     efforts = (("tries", tries, 1), ("patience", patience, 1), ("rounds", rounds, 0))
     for name, value, least in efforts:
         if value < least:
@@ -96,28 +125,19 @@ def _upward_plan(grid: Grid, cells: IntArray) -> IntArray:
     return np.array(states)
 
 
-def _best_plan(grid: Grid, cells: IntArray, rng: Generator, tries: int, patience: int) -> IntArray:
-    """The plan of several that leaves the fewest joints folded."""
-    best = peel_plan(grid, cells, rng, patience=patience, bias=BIASES[0])
-    for k in range(1, tries):
-        if left_folded(best) <= 1:
-            break
-        states = peel_plan(grid, cells, rng, patience=patience, bias=BIASES[k % 3])
-        best = min(best, states, key=left_folded)
-    return best
-
-
-def _opened(voxels: IntArray, rng: Generator, rounds: int, patience: int) -> Motion:
+def _opened(voxels: IntArray, rng: Generator, rounds: int, patience: int, joints: str) -> Motion:
     """Limb moves, then peels: straight if a search between two rounds found a complete plan."""
     for k in range(rounds):
         if k % RESTART == 0:
             pose, rows = open_pose(voxels, ROOM), []
-        rows.append(open_up(pose, arcs(), PROPOSALS * len(voxels), HEAT, rng))
+        proposals, slotted = PROPOSALS * len(voxels), joints != "free"
+        rows.append(open_up(pose, arcs(), proposals, HEAT, rng, slotted))
         grid, cells = box_grid(pose.joint.shape), cells_of(pose.place, pose.joint.shape)
-        states = peel_plan(grid, cells, rng, patience=patience, bias=BIASES[k % len(BIASES)])
+        bias = BIASES[k % len(BIASES)]
+        states = peel_plan(grid, cells, rng, patience=patience, bias=bias, joints=joints)
         if left_folded(states) <= 1:
             break
-    motion = motion_of(pose.place, states)
+    motion = motion_of(pose.place, states, joints)
     reason = f"{motion.reason} after {sum(map(len, rows))} limb moves"
     moves = np.concatenate([*rows, motion.moves])
     return replace(motion, start=voxels, moves=moves, reason=reason)

@@ -4,12 +4,14 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..grid import IntArray, bar_directions
 from ..kinematics import Move
 from ..solid import Motion
 from ._chain import INWARD, Grid, box_grid, cells_of, link
 from ._search import keeps_rules, search
+from ._slots import FREE, SLOTTED, SPARING, may_detour, may_swap, twisted_by_peel
 
 DIAMETER = 0.999
 """Peels and swings keep bars a whole voxel apart; the rest is room for rounding."""
@@ -17,6 +19,12 @@ DIAMETER = 0.999
 MAX_BEND_DEG = 90.0
 
 BOTH_ENDS = -1
+
+Row = tuple[int, int, int, int]
+Directions = NDArray[np.int8]
+
+JOINTS = {"free": FREE, "slotted": SLOTTED, "sparing": SPARING}
+"""What a plan asks of the joints: nothing, no twist in their slots, or as few as it finds."""
 
 
 def peel_plan(
@@ -29,6 +37,7 @@ def peel_plan(
     patience: int = 5_000,
     bias: float = 0.02,
     only: int = BOTH_ENDS,
+    joints: str = "free",
 ) -> IntArray:
     """States (K, 4) of the best peel plan found for the chain through `cells`.
 
@@ -39,7 +48,8 @@ def peel_plan(
         starts = np.hstack([np.tile([0, len(cells) - 1], (36, 1)), directions])
     budget = max(100_000, 4 * len(cells)) if budget is None else budget
     chain = link(grid, np.ascontiguousarray(cells, np.int32))
-    return search(grid, chain, starts.astype(np.int32), budget, patience, bias, only, rng)
+    starts = starts.astype(np.int32)
+    return search(grid, chain, starts, budget, patience, bias, only, rng, JOINTS[joints])
 
 
 def left_folded(states: IntArray) -> int:
@@ -54,20 +64,16 @@ def path_grid(voxels: IntArray) -> tuple[Grid, IntArray]:
     return box_grid(shape), cells_of(voxels - corner, shape)
 
 
-def motion_of(voxels: IntArray, states: IntArray) -> Motion:
-    """The motion that a plan stands for, with the two swings that line up the last bar."""
+def motion_of(voxels: IntArray, states: IntArray, joints: str = "free") -> Motion:
+    """The motion that a plan stands for, with the two swings that line up the last bar.
+
+    Unless `joints` are free, peels that would twist a capsule are made in two or swapped with the
+    next, where there is room for that.
+    """
     bars = bar_directions(voxels)
     last = len(voxels) - 1
-    moves = []
-    for (a, b, da, db), (a2, b2, da2, db2) in pairwise(states.tolist()):
-        if b2 < b and bars[b2] != db:
-            moves.append((Move.PEEL, b2, b, db))
-        elif a2 > a and (bars[a] + 3) % 6 != da:
-            moves.append((Move.PEEL, a2, a, da))
-        elif db2 != db and b < last:
-            moves.append((Move.SWING, b, b + 1, db2))
-        elif da2 != da and a > 0:
-            moves.append((Move.SWING, a, a - 1, da2))
+    steps = [_move(bars, last, old, new) for old, new in pairwise(states.tolist())]
+    moves = [row for row in steps if row] if joints == "free" else _untwisted(voxels, states, steps)
     a, b, da, db = states[-1]
     straight = bool(b - a == 1)
     if straight:
@@ -81,13 +87,49 @@ def motion_of(voxels: IntArray, states: IntArray) -> Motion:
     return Motion(voxels, rows, DIAMETER, MAX_BEND_DEG, straight, reason)
 
 
+def _move(bars: Directions, last: int, old: list[int], new: list[int]) -> Row | None:
+    """The move from one state to the next; None where nothing turns."""
+    (a, b, da, db), (a2, b2, da2, db2) = old, new
+    if b2 < b and bars[b2] != db:
+        return (Move.PEEL, b2, b, db)
+    if a2 > a and (bars[a] + 3) % 6 != da:
+        return (Move.PEEL, a2, a, da)
+    if db2 != db and b < last:
+        return (Move.SWING, b, b + 1, db2)
+    if da2 != da and a > 0:
+        return (Move.SWING, a, a - 1, da2)
+    return None
+
+
+def _untwisted(voxels: IntArray, states: IntArray, steps: list[Row | None]) -> list[Row]:
+    """The moves of a plan in an order and by ways that keep to the slots, where there are such."""
+    grid, cells = path_grid(voxels)
+    chain, moves, states = link(grid, cells), list[Row](), states.astype(np.int32)
+    ends = [int(old[1] != new[1]) for old, new in pairwise(states.tolist())]
+    k = 0
+    while k < len(steps):
+        row, state, end = steps[k], states[k], ends[k]
+        capsule = twisted_by_peel(grid, chain, state, end) if row and row[0] == Move.PEEL else -1
+        if row and capsule >= 0:
+            following = steps[k + 1] if k + 1 < len(steps) and ends[k + 1] == end else None
+            if following and following[0] == Move.PEEL and may_swap(grid, chain, state, end):
+                moves.append(following)
+                k += 1
+            elif may_detour(grid, chain, state, end, capsule):
+                moves.append((*row[:3], capsule))
+        if row:
+            moves.append(row)
+        k += 1
+    return moves
+
+
 def has_peel_plan(motion: Motion) -> bool:
     """Whether a motion ends straight by a peel plan: nothing but its two straight rods moves."""
     return len(_plan_behind(motion)) > 0
 
 
 def states_of(motion: Motion) -> IntArray:
-    """The plan behind a motion of peels and swings; the inverse of `motion_of`.
+    """The plan behind a motion of peels and swings; the inverse of `motion_of`, for any joints.
 
     Raises
     ------
@@ -102,10 +144,22 @@ def states_of(motion: Motion) -> IntArray:
 
 def _plan_behind(motion: Motion) -> IntArray:
     """The states (K, 4) of `states_of`; none if they would not be a peel plan of this motion."""
+    states = rod_states(motion)
+    grid, cells = path_grid(motion.start)
+    return states if len(states) and keeps_rules(grid, link(grid, cells), states) else states[:0]
+
+
+def rod_states(motion: Motion) -> IntArray:
+    """States (K, 4) of a motion to the line in which nothing but two straight end rods moves.
+
+    None, (0, 4), if the motion is not of this kind. That rods have room is not asked here.
+    """
     none = np.empty((0, 4), np.int32)
     if not (motion.straight and np.isin(motion.moves[:, 0], (Move.PEEL, Move.SWING)).all()):
         return none
-    state = [0, len(motion.start) - 1, _first_rod(motion, 0), _first_rod(motion, 1)]
+    moves = _in_order(motion.moves)
+    bars = bar_directions(motion.start)
+    state = [0, len(motion.start) - 1, _first_rod(bars, moves, 0), _first_rod(bars, moves, 1)]
     states = [tuple(state)]
 
     def let_go(end: int, joint: int) -> None:
@@ -114,7 +168,7 @@ def _plan_behind(motion: Motion) -> IntArray:
             state[end] += INWARD[end]
             states.append(tuple(state))
 
-    for kind, joint, other, value in motion.moves.tolist():
+    for kind, joint, other, value in moves:
         end = int(other > joint)
         if not state[0] <= joint <= state[1]:
             return none
@@ -125,18 +179,31 @@ def _plan_behind(motion: Motion) -> IntArray:
     if state[0] == state[1]:
         return none
     let_go(1, state[0] + 1)  # the rest is straight, so either end may take it
-    grid, cells = path_grid(motion.start)
     for plan in _ended(np.array(states, np.int32)):
-        if np.array_equal(motion_of(motion.start, plan).moves, motion.moves):
-            return plan if keeps_rules(grid, link(grid, cells), plan) else none
+        for joints in ("free", "slotted"):
+            if np.array_equal(motion_of(motion.start, plan, joints).moves, motion.moves):
+                return plan
     return none
 
 
-def _first_rod(motion: Motion, end: int) -> int:
+def _in_order(moves: IntArray) -> list[Row]:
+    """The moves with no peel made in two, and none before that of the bar beyond it."""
+    rows: list[Row] = []
+    for row in map(tuple, moves.tolist()):
+        kind, joint, other, value = rows[-1] if rows else (-1, -1, -1, -1)
+        if row[0] == kind == Move.PEEL and row[1:3] == (joint, other):
+            rows[-1] = row
+        elif row == (kind, other, 2 * other - joint, value) and kind == Move.PEEL:
+            rows.insert(-1, row)
+        else:
+            rows.append(row)
+    return rows
+
+
+def _first_rod(bars: Directions, moves: list[Row], end: int) -> int:
     """The direction that the rod of `end` starts with."""
-    bars = bar_directions(motion.start)
     flip = 3 * (1 - end)
-    for kind, joint, other, value in motion.moves.tolist():
+    for kind, joint, other, value in moves:
         if (other > joint) == (end == 1):
             return int(value) if kind == Move.PEEL else int(bars[min(joint, other)] + flip) % 6
     return int(bars[-end] + flip) % 6

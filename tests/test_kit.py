@@ -1,0 +1,50 @@
+"""From one model to a folder with all that it takes, and chains that printed blocks can be."""
+
+import pytest
+
+import lineup as lu
+from lineup import cli
+
+
+@pytest.fixture(scope="module")
+def kit(tmp_path_factory):
+    """A folder that `lineup kit` filled, and what it said at the end."""
+    folder = tmp_path_factory.mktemp("kit")
+    code = cli.run(["kit", "duck", "--blocks", "20", "--out", str(folder)])
+    return folder, code
+
+
+def test_everything_is_there(kit):
+    folder, code = kit
+    assert code == 0
+    for name in (
+        *("duck.solid.json", "duck.folding.json", "chains.png", "print/chain.3mf"),
+        *("print/parts.md", "duck.manual.pdf", "duck.manual.csv", "duck.strength.md"),
+        *("duck.strength.png", "duck.standing.csv", "duck.html"),
+    ):
+        assert (folder / name).stat().st_size > 0, name
+
+
+def test_the_chain_is_one_that_printed_blocks_can_be(kit):
+    folding = lu.load(kit[0] / "duck.folding.json")
+    assert lu.certify(folding.motion, joints="slotted").ok
+    assert "certified" in (kit[0] / "duck.html").read_text()
+
+
+def test_what_cannot_be_folded_ends_it(tmp_path, capsys):
+    code = cli.run(["kit", "no-such-model", "--out", str(tmp_path)])
+    assert code == 2
+    assert "no file and no model" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_design_for_slots_is_judged_for_slots():
+    design = lu.lineup(["duck"], blocks=30, joints="slotted")
+    assert [c.ok and c.violations == 0 for c in design.certificates] == [True]
+    free = lu.lineup(["duck"], blocks=30)
+    assert lu.certify(free.foldings[0].motion, joints="slotted").violations > 0
+
+
+def test_joints_of_no_known_kind_are_refused():
+    with pytest.raises(ValueError, match="joints must be one of"):
+        lu.lineup(["duck"], blocks=30, joints="rubber")

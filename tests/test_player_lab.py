@@ -1,0 +1,156 @@
+"""The player in JupyterLab: run in a cell, led by hand and from Python, and in a saved notebook."""
+
+import os
+import secrets
+import socket
+import subprocess
+import sys
+import time
+import urllib.request
+from contextlib import contextmanager, suppress
+
+import numpy as np
+import pytest
+from browser import BROWSER, colourful, launched, seen
+
+import lineup as lu
+
+api = pytest.importorskip("playwright.sync_api")
+nbclient = pytest.importorskip("nbclient")
+nbformat = pytest.importorskip("nbformat")
+for package in ("anywidget", "jupyterlab"):
+    pytest.importorskip(package)
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(BROWSER is None, reason="no Chromium is installed"),
+]
+
+PLAYER = "document.querySelector('.lineup-player')?.player"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Two equal notebooks, of which `saved` was run by nbclient, as `make notebooks` does."""
+    folder = tmp_path_factory.mktemp("lab")
+    folding = lu.fold(lu.VoxelSolid(np.ones((4, 3, 3), bool)), rounds=50, trial_rounds=10)
+    file = lu.save(folding, folder / "block.folding.json")
+    cells = [
+        f"import lineup as lu\nfilm = lu.player(lu.load({str(file)!r}), name='block')\nfilm",
+        "print('told', film.time, film.picked, film.playing)",
+        "film.time, film.picked = 20, 8",
+    ]
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(c) for c in cells])
+    notebook.metadata.kernelspec = {
+        "name": "python3",
+        "display_name": "Python 3",
+        "language": "python",
+    }
+    nbformat.write(notebook, folder / "fresh.ipynb")
+    notebook.cells = notebook.cells[:1]
+    nbclient.NotebookClient(notebook, timeout=120, kernel_name="python3").execute()
+    nbformat.write(notebook, folder / "saved.ipynb")
+    return folder
+
+
+@contextmanager
+def laboratory(folder):
+    """JupyterLab on a free port of this machine alone: the address of its notebooks, a token."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    token = secrets.token_hex(16)
+    settings = [
+        "--no-browser",
+        "--allow-root",
+        "--ip=127.0.0.1",
+        f"--port={port}",
+        f"--IdentityProvider.token={token}",
+        f"--ServerApp.root_dir={folder}",
+        "--LabApp.news_url=",
+        "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate",
+    ]
+    environment = os.environ | {"JUPYTER_CONFIG_DIR": str(folder / "config")}
+    with subprocess.Popen(
+        [sys.executable, "-m", "jupyter", "lab", *settings],
+        env=environment,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    ) as server:
+        try:
+            answered(f"http://127.0.0.1:{port}/api")
+            yield f"http://127.0.0.1:{port}/lab/tree/{{}}?token={token}&reset"
+        finally:
+            server.terminate()
+
+
+def answered(address):
+    for _ in range(240):
+        try:
+            with urllib.request.urlopen(address, timeout=1):
+                return
+        except OSError:
+            time.sleep(0.5)
+    raise TimeoutError(address)
+
+
+@pytest.fixture(scope="module")
+def notebook(folder):
+    """Open a notebook by its name, in a tab of a browser."""
+    with laboratory(folder) as address, api.sync_playwright() as engine:
+        browser = launched(engine, "webgl")
+
+        def opened(name):
+            page = browser.new_page(viewport={"width": 1200, "height": 1000})
+            page.set_default_timeout(60_000)
+            page.goto(address.format(name))
+            page.wait_for_selector(".jp-Notebook .jp-Cell")
+            page.wait_for_selector(".jp-Notebook-ExecutionIndicator[data-status=idle]")
+            return page
+
+        yield opened
+        browser.close()
+
+
+def run(page, cell, holds):
+    """Run a cell as a hand does, once more if the notebook was not ready for it, and wait."""
+    for _ in range(4):
+        page.locator(".jp-Cell .jp-InputArea-editor").nth(cell).click()
+        page.keyboard.press("Shift+Enter")
+        with suppress(api.TimeoutError):
+            page.wait_for_function(holds, timeout=30_000)
+            return
+    raise TimeoutError(holds)
+
+
+def test_a_player_in_a_cell_plays_and_is_in_step_with_python(notebook):
+    page = notebook("fresh.ipynb")
+    run(page, 0, f"{PLAYER}?.frames > 0")
+    assert colourful(seen(page, ".lineup-player canvas.view")) > 0.03
+    assert page.inner_text(".lineup-player .badge") == "not judged"
+    assert page.get_by_role("button", name="Link to this moment").is_hidden()
+
+    page.locator(".lineup-player .play").click()
+    page.wait_for_function(f"{PLAYER}.state.time > 1")
+    page.locator(".lineup-player .play").click()
+    n_cells = page.locator(".jp-Cell").count()
+    page.locator(".lineup-player canvas.view").focus()
+    for key in ("Home", "ArrowRight", "ArrowRight", "Space", "Space", "Home", "ArrowRight"):
+        page.keyboard.press(key)  # keys that JupyterLab has uses for as well
+    assert page.evaluate(f"{PLAYER}.state.time") == 1
+    assert page.locator(".jp-Cell").count() == n_cells
+    page.locator(".lineup-player .block").fill("3")
+
+    outputs = "[...document.querySelectorAll('.jp-OutputArea-output')]"
+    run(page, 1, f"{outputs}.some((output) => output.innerText.includes('told 1.0 4 False'))")
+    run(page, 2, f"{PLAYER}.state.time === 20 && {PLAYER}.state.picked === 8")
+    page.close()
+
+
+def test_a_saved_notebook_shows_a_still_picture_without_running(notebook):
+    page = notebook("saved.ipynb")
+    still = page.locator(".jp-OutputArea-output img")
+    still.wait_for()
+    assert still.evaluate("(image) => image.naturalWidth") > 600
+    assert page.evaluate(PLAYER) is None
+    page.close()
