@@ -23,14 +23,19 @@ def kernel():
         yield client
 
 
+def run(notebook, kernel):
+    """Run a notebook from top to bottom where nothing is defined."""
+    emptying = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell("%reset -f")])
+    for kernel.nb in (emptying, notebook):
+        kernel.reset_execution_trackers()
+        for k, cell in enumerate(kernel.nb.cells):
+            kernel.execute_cell(cell, k)
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_a_notebook_runs(name, kernel):
     notebook = jupytext.read(FOLDER / f"{name}.py")
-    kernel.nb = notebook
-    kernel.reset_execution_trackers()
-    kernel.execute_cell(nbformat.v4.new_code_cell("%reset -f"), 0)
-    for k, cell in enumerate(notebook.cells):
-        kernel.execute_cell(cell, k)
+    run(notebook, kernel)
     pictures = [
         output["data"]["image/jpeg"]
         for cell in notebook.cells
@@ -39,6 +44,13 @@ def test_a_notebook_runs(name, kernel):
     ]
     calls = sum(len(re.findall(r"^draw\.", cell.source, re.M)) for cell in notebook.cells)
     assert len(pictures) == calls > 0
+
+
+def test_what_a_notebook_does_not_define_it_does_not_have(kernel):
+    cells = [nbformat.v4.new_code_cell(source) for source in ("seen = 1", "seen")]
+    run(nbformat.v4.new_notebook(cells=cells), kernel)
+    with pytest.raises(nbclient.exceptions.CellExecutionError, match="NameError"):
+        run(nbformat.v4.new_notebook(cells=cells[1:]), kernel)
 
 
 @pytest.mark.parametrize("name", NAMES)
