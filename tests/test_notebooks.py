@@ -18,7 +18,7 @@ NAMES = sorted(file.stem for file in FOLDER.glob("*.py"))
 @pytest.fixture(scope="module")
 def kernel():
     """One Jupyter kernel for all notebooks, for it takes as long to start as they take to run."""
-    client = nbclient.NotebookClient(nbformat.v4.new_notebook(), timeout=60, kernel_name="python3")
+    client = nbclient.NotebookClient(nbformat.v4.new_notebook(), timeout=600, kernel_name="python3")
     with client.setup_kernel(cwd=str(FOLDER), env=os.environ | {"LINEUP_QUICK": "1"}):
         yield client
 
