@@ -1,23 +1,41 @@
 """Notebooks run from top to bottom, and what is committed says nothing about who ran it."""
 
 import json
+import os
 import re
 from pathlib import Path
 
 import pytest
 
 nbclient = pytest.importorskip("nbclient")
+nbformat = pytest.importorskip("nbformat")
 jupytext = pytest.importorskip("jupytext")
 
 FOLDER = Path(__file__).parents[1] / "notebooks"
 NAMES = sorted(file.stem for file in FOLDER.glob("*.py"))
 
 
+@pytest.fixture(scope="module")
+def kernel():
+    """One Jupyter kernel for all notebooks, for it takes as long to start as they take to run."""
+    client = nbclient.NotebookClient(nbformat.v4.new_notebook(), timeout=600, kernel_name="python3")
+    with client.setup_kernel(cwd=str(FOLDER), env=os.environ | {"LINEUP_QUICK": "1"}):
+        yield client
+
+
+def run(notebook, kernel):
+    """Run a notebook from top to bottom where nothing is defined."""
+    emptying = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell("%reset -f")])
+    for kernel.nb in (emptying, notebook):
+        kernel.reset_execution_trackers()
+        for k, cell in enumerate(kernel.nb.cells):
+            kernel.execute_cell(cell, k)
+
+
 @pytest.mark.parametrize("name", NAMES)
-def test_a_notebook_runs(name, monkeypatch):
-    monkeypatch.setenv("LINEUP_QUICK", "1")
+def test_a_notebook_runs(name, kernel):
     notebook = jupytext.read(FOLDER / f"{name}.py")
-    nbclient.NotebookClient(notebook, timeout=60, kernel_name="python3").execute(cwd=str(FOLDER))
+    run(notebook, kernel)
     pictures = [
         output["data"]["image/jpeg"]
         for cell in notebook.cells
@@ -26,6 +44,13 @@ def test_a_notebook_runs(name, monkeypatch):
     ]
     calls = sum(len(re.findall(r"^draw\.", cell.source, re.M)) for cell in notebook.cells)
     assert len(pictures) == calls > 0
+
+
+def test_what_a_notebook_does_not_define_it_does_not_have(kernel):
+    cells = [nbformat.v4.new_code_cell(source) for source in ("seen = 1", "seen")]
+    run(nbformat.v4.new_notebook(cells=cells), kernel)
+    with pytest.raises(nbclient.exceptions.CellExecutionError, match="NameError"):
+        run(nbformat.v4.new_notebook(cells=cells[1:]), kernel)
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -405,8 +405,9 @@ def test_mend_refuses_what_is_no_solid(array: NDArray[Any]) -> None:
 
 
 @pytest.mark.skipif(not LU_MODELS, reason="LINEUP_MODELS names no folder of meshes")
-def test_real_meshes_reach_the_targets() -> None:
-    files = sorted(Path(LU_MODELS or "").glob("*.ply"))
+@pytest.mark.parametrize("every", [4, pytest.param(1, marks=pytest.mark.slow)])
+def test_real_meshes_reach_the_targets(every: int) -> None:
+    files = sorted(Path(LU_MODELS or "").glob("*.ply"))[::every]
     solids = [lu.voxelize(file, 1600) for file in files]
     sources = {solid.name: solid.source for solid in solids}
     assert all(abs(solid.size - 1600) <= 32 for solid in solids if solid.name != "table")
