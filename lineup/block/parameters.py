@@ -252,8 +252,8 @@ def named_block(name: str, pitch_mm: float = 10.0, **measures: float) -> Block:
 
     Examples
     --------
-    >>> named_block("pull", 20.0, clearance_mm=0.2).hole_mm
-    5.6
+    >>> named_block("pull", 20.0, clearance_mm=0.2).snap_mm
+    -0.2
     """
     if name not in BLOCKS:
         raise ValueError(f"unknown block {name!r}; known: {sorted(BLOCKS)}")
