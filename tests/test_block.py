@@ -137,7 +137,7 @@ def test_only_the_papers_block_snaps(reports):
     assert reports["standard"].snap_mm3 > 0.1
     assert reports["pull"].snap_mm3 == reports["pull120"].snap_mm3 == 0
     harder = replace(PAPER, snap_mm=0.2)
-    snap = max(judge._overlap(bodies) for bodies in judge._ways(solids(harder), harder))
+    snap = judge._overlap(judge._ways(solids(harder), harder))
     assert snap > 2 * reports["standard"].snap_mm3
 
 
@@ -163,8 +163,8 @@ def test_a_hinge_has_the_volume_of_two_balls_and_a_bar():
     cap = r - np.sqrt(r**2 - b**2)  # of each ball, inside the bar's cylinder
     lens = np.pi * cap**2 * (3 * r - cap) / 3
     exact = 2 * (4 / 3 * np.pi * r**3 - lens) + np.pi * b**2 * (a - 2 * (r - cap))
-    (smooth,) = [block_parts(Block(segments=128))["hinge"].volume_mm3]
-    assert smooth == pytest.approx(exact, rel=2e-3)
+    (smooth,) = [block_parts(Block(segments=64))["hinge"].volume_mm3]
+    assert smooth == pytest.approx(exact, rel=6e-3)
     assert block_parts(PAPER)["hinge"].volume_mm3 < exact
 
 
@@ -307,6 +307,12 @@ def test_a_bar_too_thick_is_seen():
     assert "parts overlap by" in faulty(
         hinge=from_another(bar_mm=3.3, ball_mm=5.1, clearance_mm=0.05)["hinge"]
     )
+
+
+@pytest.mark.parametrize("name", ["end", "middle", "tongue"])
+def test_a_slot_that_is_shut_is_seen(name):
+    plug = Manifold.cube([4, 1.4, 4], True).translate([0, 3.7, 0])
+    assert "parts overlap by" in faulty(**{name: solids(DRAFT)[name] + plug})
 
 
 def test_a_ball_too_small_is_seen():

@@ -215,6 +215,18 @@ def test_print_says_where_the_block_falls_short(lineup):
     assert Path("print", "folded.3mf").is_file()
 
 
+def test_print_takes_what_the_coupon_told(lineup):
+    lu.save(path_of(4), "bar.path.json")
+    code, out, _ = lineup("print", "bar.path.json", "--clearance-mm", 0.2, "--snap-mm", 0.05)
+    assert code == 0
+    assert "least gap 0.200 mm" in out
+    assert "snaps by 0.05 mm" in Path("print", "parts.md").read_text()
+    code, _, err = lineup("print", "bar.path.json", "--clearance-mm", 0.9)
+    assert code == 2
+    assert "clearance_mm must be from 0.05 to 0.5 mm" in err
+    assert lineup("print", "bar.path.json", "--block", "thin")[0] == 2
+
+
 def test_print_refuses_what_is_no_chain(lineup):
     lu.save(lu.VoxelSolid(np.ones((2, 2, 2), bool)), "cube.solid.json")
     code, _, err = lineup("print", "cube.solid.json")

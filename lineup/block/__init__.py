@@ -1,7 +1,7 @@
 """The printable building block: its parameters, its parts, and what is checked of them."""
 
 from .checks import BlockReport, check_block, check_parts
-from .parameters import BLOCKS, WALL_MM, Block, scaled
+from .parameters import BLOCKS, WALL_MM, Block, named_block, scaled
 from .parts import Part, block_parts, solids
 from .strength import (
     block_strength,
@@ -26,6 +26,7 @@ __all__ = [
     "check_parts",
     "column_force_n",
     "insertion_strain",
+    "named_block",
     "scaled",
     "slenderness",
     "snap_force_n",

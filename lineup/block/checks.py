@@ -5,11 +5,11 @@ The checks look at the parts alone and not at how they were made, so that they c
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import combinations, product
-from typing import Any
+from itertools import chain, product
+from typing import Any, TypeAlias
 
 import igl
 import numpy as np
@@ -18,6 +18,9 @@ from scipy import ndimage
 from ..grid import FloatArray
 from .parameters import Block
 from .parts import join_clearance_mm, part_of, solids
+
+Pair: TypeAlias = tuple[Any, Any]
+"""Two solids that might meet."""
 
 STATES = ((0, 0), (0, 1), (0, -1), (1, 0), (-1, 0))
 """The five states of a joint on the lattice: quarter turns about -y and z, of which one is 0."""
@@ -103,22 +106,24 @@ def check_parts(parts: Mapping[str, Any], block: Block) -> BlockReport:
         nan = float("nan")
         return BlockReport(False, wrong[0], 0, nan, nan, nan, nan)
     poses = list(_poses(parts, block))
-    overlap = max(_overlap(bodies) for bodies in poses)
-    gap = min(_gap(bodies, 2 * block.clearance_mm) for bodies in poses)
+    pairs = [*chain.from_iterable(poses), *_joints(parts, block)]
+    overlap, gap = _overlap(pairs), _gap(pairs, 2 * block.clearance_mm)
     if overlap > _VOLUME:
         wrong.append(f"parts overlap by {overlap:.3g} mm^3 in a state of the joints")
     elif gap < block.clearance_mm - 1e-3:
         wrong.append(f"parts come within {gap:.3f} mm, and {block.clearance_mm:g} are asked for")
     radius = ball_radius(parts["hinge"], block)
     wrong += [f"{a} and {b} come apart" for a, b in _loose(parts, block)]
-    plays = [play_mm(socket, radius) for socket in _sockets(parts, block)]
-    if not np.isfinite(max(plays)):
+    play = 0.0
+    for socket in _sockets(parts, block):
+        play = max(play, play_mm(socket, radius)) if np.isfinite(play) else play
+    if not np.isfinite(play):
         wrong.append("a ball leaves its socket")
-    snap = max(_overlap(bodies) for bodies in _ways(parts, block))
+    snap = _overlap(_ways(parts, block))
     if block.snap_mm <= 0 and snap > _VOLUME:
         wrong.append(f"a bar meets the sides of a slot, by {snap:.3g} mm^3")
     return BlockReport(
-        not wrong, wrong[0] if wrong else "printable", len(poses), overlap, gap, max(plays), snap
+        not wrong, wrong[0] if wrong else "printable", len(poses), overlap, gap, play, snap
     )
 
 
@@ -147,29 +152,38 @@ def _middle(parts: Mapping[str, Any]) -> list[Any]:
     return [parts[name] for name in ("middle", "sleeve", "pin") if name in parts]
 
 
-def _poses(parts: Mapping[str, Any], block: Block) -> Iterator[list[Any]]:
-    """The bodies of a capsule, a hinge and a capsule, in every state of the two joints.
+def _poses(parts: Mapping[str, Any], block: Block) -> Iterator[list[Pair]]:
+    """What might meet of a capsule, a hinge and a capsule, in every state of the two joints.
 
-    Where capsules swivel, then also with the last half of the first one turned, and what follows
-    with it.
+    What a hinge might meet in the socket it is in is for `_joints`. Where capsules swivel, then
+    also with the last half of the first one turned, and what follows with it.
     """
     a = block.pitch_mm
+    before = _middle(parts)
     for first, second in product(STATES, repeat=2):
-        after = [_bent(body, second, 90).translate([a, 0, 0]) for body in _middle(parts)]
+        after = [_bent(body, second, 90).translate([a, 0, 0]) for body in before]
         moved = [_bent(body, first, 90).translate([a, 0, 0]) for body in [parts["hinge"], *after]]
-        yield _middle(parts) + moved
+        hinge, *after = moved
+        far = [*product(before[:-1], [hinge]), *product([hinge], after[1:])]
+        yield [*product(before, after), *far]
         if block.swivel and second == (0, 0):
-            sleeve, pin = _middle(parts)
+            sleeve, pin = before
             for twist in _TWISTS_DEG:
-                yield [sleeve, *(body.rotate([twist, 0, 0]) for body in [pin, *moved])]
+                yield [(sleeve, body.rotate([twist, 0, 0])) for body in [pin, *moved]]
 
 
-def _ways(parts: Mapping[str, Any], block: Block) -> Iterator[list[Any]]:
+def _joints(parts: Mapping[str, Any], block: Block) -> Iterator[Pair]:
+    """Every socket and a hinge in it, in every state of the joint."""
+    for socket, state in product(_sockets(parts, block), STATES):
+        yield socket, _bent(parts["hinge"], state, 90)
+
+
+def _ways(parts: Mapping[str, Any], block: Block) -> Iterator[Pair]:
     """A socket and a hinge on its way along a slot, from straight to bent all the way."""
     socket = _middle(parts)[-1].translate([-block.pitch_mm, 0, 0])
     for deg in np.linspace(0, block.bend_deg, _STEPS + 1).tolist():
         for state in STATES[1:]:
-            yield [socket, _bent(parts["hinge"], state, deg)]
+            yield socket, _bent(parts["hinge"], state, deg)
 
 
 def _loose(parts: Mapping[str, Any], block: Block) -> Iterator[tuple[str, str]]:
@@ -187,8 +201,8 @@ def _loose(parts: Mapping[str, Any], block: Block) -> Iterator[tuple[str, str]]:
         shift = 2 * play + 0.1  # a flank at 30 degrees is met after twice its clearance
         across = [way if free is None else np.delete(way, free) for way in ways]
         moved = [shift * w / np.linalg.norm(a) for w, a in zip(ways, across, strict=True)]
-        holds = all(_overlap([parts[inner].translate(m), parts[outer]]) > _VOLUME for m in moved)
-        if not holds or _overlap([parts[inner], parts[outer]]) > _VOLUME:
+        holds = all(_overlap([(parts[inner].translate(m), parts[outer])]) > _VOLUME for m in moved)
+        if not holds or _overlap([(parts[inner], parts[outer])]) > _VOLUME:
             yield inner, outer
 
 
@@ -197,21 +211,23 @@ def _bent(solid: Any, state: tuple[int, int], deg: float) -> Any:
     return solid.rotate([0, -deg * state[0], deg * state[1]])
 
 
-def _overlap(bodies: list[Any]) -> float:
-    return max(float((a ^ b).volume()) for a, b in combinations(bodies, 2))
+def _overlap(pairs: Iterable[Pair]) -> float:
+    return max(float((a ^ b).volume()) for a, b in pairs)
 
 
-def _gap(bodies: list[Any], reach: float) -> float:
-    return min(float(a.min_gap(b, reach)) for a, b in combinations(bodies, 2))
+def _gap(pairs: Iterable[Pair], reach: float) -> float:
+    return min(float(a.min_gap(b, reach)) for a, b in pairs)
 
 
 def _sockets(parts: Mapping[str, Any], block: Block) -> Iterator[Any]:
-    """Every part with a socket, moved so that the socket is at 0."""
-    at = {"end": 0, "sleeve": 0, "tongue": 0, "middle": 0, "pin": 1, "groove": 1}
-    for name in sorted(set(parts) & set(at)):
-        yield parts[name].translate([-at[name] * block.pitch_mm, 0, 0])
-    if "middle" in parts:
-        yield parts["middle"].translate([-block.pitch_mm, 0, 0])
+    """Every socket, moved so that it is at 0 and open towards +x, with the part it is in."""
+    for name in ("end", "middle", "pin", "groove"):
+        if name in parts:
+            at = 0.0 if name == "end" else block.pitch_mm
+            yield parts[name].translate([-at, 0, 0])
+    for name in ("middle", "sleeve", "tongue"):
+        if name in parts:
+            yield parts[name].rotate([0, 0, 180])
 
 
 def ball_radius(hinge: Any, block: Block) -> float:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 WALL_MM = 0.8
 """Least thickness of a wall, a lip or a rod that is printed."""
@@ -50,8 +51,8 @@ class Block:
 
     Examples
     --------
-    >>> Block().diameter, Block(ball_mm=4.6).cavity_mm
-    (0.97, 5.1)
+    >>> Block().diameter, Block(ball_mm=5.2).cavity_mm
+    (0.97, 5.7)
     """
 
     pitch_mm: float = 10.0
@@ -116,6 +117,11 @@ def _ranges(b: Block) -> Iterator[tuple[str, float, float, str]]:
         b.pitch_mm / 4,
         "capsules need clearance, and more of it the further they bend",
     )
+    yield from _ranges_within(b)
+
+
+def _ranges_within(b: Block) -> Iterator[tuple[str, float, float, str]]:
+    """Of what goes into a capsule, whose size and clearance are good."""
     largest = 2 * (b.radius_mm - WALL_MM - b.clearance_mm)
     widest = ((1 - RETAINED) * largest - RETAINED_MM) / math.sqrt(2)
     yield (
@@ -234,3 +240,25 @@ A swivel lets the slots of each end turn with the bend, so that a joint bends in
 slots of the paper's block make the bends (y, z) a cross: it has the clearance of a pull but not its
 bends.
 """
+
+
+def named_block(name: str, pitch_mm: float = 10.0, **measures: float) -> Block:
+    """One of `BLOCKS` at a pitch, with some of its measures changed.
+
+    Raises
+    ------
+    ValueError
+        If there is no such block, or it is none with these measures.
+
+    Examples
+    --------
+    >>> named_block("pull", 20.0, clearance_mm=0.2).snap_mm
+    -0.2
+    """
+    if name not in BLOCKS:
+        raise ValueError(f"unknown block {name!r}; known: {sorted(BLOCKS)}")
+    block = scaled(BLOCKS[name], pitch_mm)
+    changed: dict[str, Any] = dict(measures)
+    if block.snap_mm < 0 and "clearance_mm" in changed:  # slots as wide as the holes at their ends
+        changed.setdefault("snap_mm", -changed["clearance_mm"])
+    return replace(block, **changed)

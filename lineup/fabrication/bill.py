@@ -12,6 +12,15 @@ from ..block import Block, BlockReport, Part, block_strength
 from .layout import Plate
 from .placing import Placed
 
+_JOINING = (
+    "Slide the tongue at the end of each plate's chain into the groove at the start of the next, "
+    "and fix it with a drop of glue or resin. The capsule is then like any other."
+)
+_STRENGTH = (
+    "For a resin of modulus 2600 MPa and compressive strength 38 MPa, friction 0.3; the paper's "
+    "figures are of its own block, whose size it does not give."
+)
+
 
 def bill(
     pieces: Sequence[Placed],
@@ -55,47 +64,47 @@ def _velcro_mm2(part: str, block: Block) -> float:
 
 
 def page(
-    title: str,
-    table: pd.DataFrame,
-    models: pd.DataFrame,
-    coupon: pd.DataFrame,
+    tables: Mapping[str, pd.DataFrame],
     plates: Sequence[Plate],
     block: Block,
     report: BlockReport,
     assumptions: Sequence[str],
     notes: Sequence[str],
 ) -> str:
-    """The bill as a page of Markdown, with what else is to be known at the printer."""
-    n_blocks = plates[-1].stop
-    lines = [f"# {title}", "", f"{n_blocks} blocks of pitch {block.pitch_mm:g} mm.", ""]
-    lines += [f"**{note}**\n" for note in notes]
-    lines += ["## Parts", "", _markdown(table), ""]
-    lines += [f"- {text}" for text in assumptions]
-    lines += ["", "## Shapes", "", _markdown(models), ""]
-    lines += ["## Plates", "", _markdown(_plates(plates)), ""]
+    """The bill as a page of Markdown, with what else is to be known at the printer.
+
+    Parameters
+    ----------
+    tables : mapping of str to DataFrame
+        "Parts", "Shapes" and "Coupon".
+    """
+    lines = [
+        f"# {plates[-1].stop} blocks of pitch {block.pitch_mm:g} mm",
+        *(f"**{note}**" for note in notes),
+        "## Parts",
+        _markdown(tables["Parts"]),
+        "\n".join(f"- {text}" for text in assumptions),
+        "## Shapes",
+        _markdown(tables["Shapes"]),
+        "## Plates",
+        _markdown(_plates(plates)),
+    ]
     if len(plates) > 1:
-        lines += [
-            "Slide the tongue at the end of each plate's chain into the groove at the start of the "
-            "next, and fix it with a drop of glue or resin. The block that is joined is then like "
-            "any other.",
-            "",
-        ]
-    lines += ["## Coupon", "", "Print `coupon.3mf` first.", "", _markdown(coupon), ""]
-    lines += ["## Block", "", _markdown(_measures(block)), ""]
+        lines.append(_JOINING)
     lines += [
+        "## Coupon",
+        "Print `coupon.3mf` first.",
+        _markdown(tables["Coupon"]),
+        "## Block",
+        _markdown(_measures(block)),
         f"Checked: {report.reason}, in {report.poses} poses; nothing overlaps, least gap "
         f"{report.gap_mm:.3f} mm, a ball has {report.play_mm:.2f} mm of play at most and cannot "
         "leave its socket.",
-        "",
         "## Strength, estimated",
-        "",
         _markdown(block_strength(block)),
-        "",
-        "For a resin of modulus 2600 MPa and compressive strength 38 MPa, friction 0.3; the "
-        "paper's figures are of its own block, whose size it does not give.",
-        "",
+        _STRENGTH,
     ]
-    return "\n".join(lines)
+    return "\n\n".join(lines) + "\n"
 
 
 def _plates(plates: Sequence[Plate]) -> pd.DataFrame:

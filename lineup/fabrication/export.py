@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ..block import BLOCKS, Block, BlockReport, Part, block_parts, check_block, scaled
+from ..block import Block, BlockReport, Part, block_parts, check_block, named_block
 from ..draw.view import colours
 from ..grid import FloatArray
 from ..kinematics import Move
@@ -94,7 +94,7 @@ def export_print(
     pitch_mm : float
         Edge of a voxel.
     block : str or Block
-        One of `BLOCKS`, scaled to the pitch, or a block of this pitch.
+        One of `lineup.BLOCKS`, scaled to the pitch, or a block of this pitch.
     bed_mm : (float, float)
         What the printer can print on.
     layers : int
@@ -125,33 +125,20 @@ def export_print(
     folder = Path(folder)
     measured = _block(block, pitch_mm)
     paths = _paths(chain)
-    report = check_block(measured)
-    if not report.ok:
-        raise ValueError(f"this block is not printable: {report.reason}; change its measures")
+    report = _checked(measured)
     laid = _laid(paths, measured, bed_mm, layers, pose)
     pieces = [pieces_on(plate, measured) for plate in laid]
-    (folder / "parts").mkdir(parents=True, exist_ok=True)
-    parts = block_parts(measured)
-    names = [pose if pose == "folded" else "chain"]
-    if len(laid) > 1:
-        names = [f"chain-{k}" for k in range(1, len(laid) + 1)]
-    written = []
-    for name, there in zip(names, pieces, strict=True):
-        shift = _shift(there, parts, bed_mm)
-        objects, places = _coloured(there, parts, 2 * laid[-1].stop)
-        written.append(write_3mf(folder / f"{name}.3mf", name, objects, places, shift))
-        if whole_stl:
-            written.append(write_stl(folder / f"{name}.stl", parts, there, shift))
-    written += [_part_file(folder, name, part) for name, part in sorted(parts.items())]
     test = coupon(measured)
+    parts = block_parts(measured)
+    (folder / "parts").mkdir(parents=True, exist_ok=True)
+    written = _chain_files(folder, pieces, parts, bed_mm, pose, whole_stl)
+    written += [_part_file(folder, name, part) for name, part in sorted(parts.items())]
     written.append(_coupon_file(folder, test, bed_mm))
-    table = bills.bill([p for on in pieces for p in on], parts, measured, density_g_cm3, rate_cm3_h)
+    on_all = [piece for on_one in pieces for piece in on_one]
+    table = bills.bill(on_all, parts, measured, density_g_cm3, rate_cm3_h)
     notes = _notes(chain, measured)
-    text = bills.page(
-        "Parts of a chain",
-        table,
-        _models(chain, measured),
-        test.table,
+    page = bills.page(
+        {"Parts": table, "Shapes": _models(chain, measured), "Coupon": test.table},
         laid,
         measured,
         report,
@@ -159,7 +146,7 @@ def export_print(
         notes,
     )
     written.append(write_whole(folder / "parts.csv", table.to_csv(index=False)))
-    written.append(write_whole(folder / "parts.md", text))
+    written.append(write_whole(folder / "parts.md", page))
     return Print(tuple(written), laid, measured, report, table, notes)
 
 
@@ -171,15 +158,20 @@ def _positive(**numbers: float) -> None:
 
 def _block(block: str | Block, pitch_mm: float) -> Block:
     if isinstance(block, str):
-        if block not in BLOCKS:
-            raise ValueError(f"unknown block {block!r}; known: {sorted(BLOCKS)}")
-        return scaled(BLOCKS[block], pitch_mm)
+        return named_block(block, pitch_mm)
     if block.pitch_mm != pitch_mm:
         raise ValueError(
             f"the block's pitch is {block.pitch_mm:g} mm, and pitch_mm is {pitch_mm:g}; "
             "lineup.block.scaled makes them agree"
         )
     return block
+
+
+def _checked(block: Block) -> BlockReport:
+    report = check_block(block)
+    if not report.ok:
+        raise ValueError(f"this block is not printable: {report.reason}; change its measures")
+    return report
 
 
 def _paths(chain: object) -> list[VoxelPath]:
@@ -270,6 +262,28 @@ def _coloured(
         colour = palette[int(number) - 1] if number else _STEEL
         objects[key] = Painted(parts[piece.part], key, colour)
     return objects, places
+
+
+def _chain_files(
+    folder: Path,
+    plates: Sequence[Sequence[Placed]],
+    parts: Mapping[str, Part],
+    bed_mm: tuple[float, float],
+    pose: str,
+    whole_stl: bool,
+) -> list[Path]:
+    names = [pose if pose == "folded" else "chain"]
+    if len(plates) > 1:
+        names = [f"chain-{k}" for k in range(1, len(plates) + 1)]
+    n_bars = plates[-1][-1].bar + 1
+    written = []
+    for name, pieces in zip(names, plates, strict=True):
+        shift = _shift(pieces, parts, bed_mm)
+        objects, places = _coloured(pieces, parts, n_bars)
+        written.append(write_3mf(folder / f"{name}.3mf", name, objects, places, shift))
+        if whole_stl:
+            written.append(write_stl(folder / f"{name}.stl", parts, pieces, shift))
+    return written
 
 
 def _part_file(folder: Path, name: str, part: Part) -> Path:

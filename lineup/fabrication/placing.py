@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from .._record import record
 from ..block import Block
 from ..grid import DIRECTIONS, FloatArray, IntArray, bar_directions
 
 
-@dataclass(frozen=True)
+@record
 class Placed:
     """One part in its place: ``x @ rotation.T + offset_mm`` for x in the frame of the part.
 
