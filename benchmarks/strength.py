@@ -8,7 +8,6 @@ from typing import Annotated, Any
 
 import pandas as pd
 import typer
-from PIL import Image
 
 import lineup as lu
 from lineup import draw
@@ -77,8 +76,8 @@ def strength(
         through[-1].insert(0, "model", name)
         if k == 0:
             result = lu.strength(folding, solid, pitch_mm)
-            lighter(draw.save(draw.strength(result), pictures / "strength.png"))
-            lighter(draw.save(draw.standing(through[-1]), pictures / "standing.png"))
+            draw.save(draw.strength(result), pictures / "strength.png")
+            draw.save(draw.standing(through[-1]), pictures / "standing.png")
     table = rounded(pd.DataFrame(rows))
     write_whole(out / "strength.csv", table.to_csv(index=False))
     page = f"{markdown(brief(table))}{UNKNOWN.format(pitch=pitch_mm)}"
@@ -107,7 +106,8 @@ def measured(
                 "paper_kpa": PAPER_KPA.get(solid.name),
             }
             seconds = round(time.process_time() - started, 1)
-            rows.append(row | {k: v for k, v in summary(result).items() if k not in row})
+            known = {*row, "residual"}
+            rows.append(row | {k: v for k, v in summary(result).items() if k not in known})
             rows[-1]["seconds"] = seconds
     return rows
 
@@ -148,11 +148,6 @@ def standings(poses: pd.DataFrame) -> pd.DataFrame:
 
 def markdown(table: pd.DataFrame) -> str:
     return table.to_markdown(index=False, floatfmt=".4g") + "\n"
-
-
-def lighter(picture: Path) -> None:
-    """Half the bytes, and no difference to the eye: 256 colours are enough."""
-    Image.open(picture).convert("RGB").quantize(256, dither=Image.Dither.NONE).save(picture)
 
 
 if __name__ == "__main__":

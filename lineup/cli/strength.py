@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -19,18 +20,11 @@ def strength(
     file: Annotated[Path, typer.Argument(help="A stored folding or path.")],
     pitch_mm: Annotated[float, typer.Option(help="Edge length of a voxel of the path.")] = 10.0,
     up: Annotated[str, typer.Option(help="Direction against gravity, +x ... -z.")] = "+z",
-    bonding: Annotated[
-        str, typer.Option(help="How faces hold: velcro, none, chain or solid.")
-    ] = "velcro",
-    density: Annotated[
-        float | None, typer.Option(help="Of a block that fills its voxels, kg/m³ (1130).")
-    ] = None,
-    through: Annotated[
-        int, typer.Option(help="Moments of the motion to look at, too; 0 for none.")
-    ] = 0,
+    bonding: Annotated[str, typer.Option(help="velcro, none, chain or solid.")] = "velcro",
+    density: Annotated[float, typer.Option(help="Of a full block, kg/m³.")] = 1130.0,
+    through: Annotated[int, typer.Option(help="Poses of the motion to look at, too.")] = 0,
     manual: Annotated[
-        Path | None,
-        typer.Option(help="NAME.manual.json: look at the body after each of its steps."),
+        Path | None, typer.Option(help="NAME.manual.json: the poses after its steps.")
     ] = None,
     out: Out = Path("."),
 ) -> None:
@@ -40,28 +34,27 @@ def strength(
     """
     from .. import draw, stress
     from ..manual import standing_by_step
-    from ..stress.results import DENSITY, shortfall, summary
+    from ..solid import Folding
+    from ..stress.results import shortfall, summary
     from ..verification import stored_name
 
-    shape, solid = _shape_of(file)
-    kg_m3 = DENSITY if density is None else density
-    result = stress.strength(shape, solid, pitch_mm, density=kg_m3, bonding=bonding, up=up)
+    shape, solid = _shape_of(file, through > 0)
+    found = stress.strength(shape, solid, pitch_mm, density=density, bonding=bonding, up=up)
     name = stored_name(file)
-    row = {**summary(result), "model": name}
+    result = replace(found, name=name)
+    row = summary(result)
     for key, value in row.items():
         typer.echo(f"{key}: {_shown(value)}")
     out.mkdir(parents=True, exist_ok=True)
     written = _written(result.table, out / f"{name}.strength", row)
     if result.stands:
         written.append(draw.save(draw.strength(result), out / f"{name}.strength.png"))
-    if manual or through:
-        if manual:
-            table = standing_by_step(manual, pitch_mm, density=kg_m3, bonding=bonding)
-        else:
-            folding = _folding(shape, file)
-            table = stress.standing(
-                folding, through, pitch_mm, density=kg_m3, bonding=bonding, up=up
-            )
+    table = None
+    if manual:
+        table = standing_by_step(manual, pitch_mm, density=density, bonding=bonding)
+    elif isinstance(shape, Folding) and through > 0:
+        table = stress.standing(shape, through, pitch_mm, density=density, bonding=bonding, up=up)
+    if table is not None:
         written += _written(table, out / f"{name}.standing")
         written.append(draw.save(draw.standing(table), out / f"{name}.standing.png"))
         some = table[table["folded"] > 0]
@@ -86,7 +79,8 @@ def _written(table: pd.DataFrame, stem: Path, row: dict[str, Any] | None = None)
     table = rounded(table)
     page = table
     if row is not None:
-        page = pd.DataFrame({"quantity": list(row), "value": [_shown(v) for v in row.values()]})
+        shown = {key: _shown(value) for key, value in row.items() if key != "residual"}
+        page = pd.DataFrame({"quantity": list(shown), "value": list(shown.values())})
     texts = {
         "csv": table.to_csv(index=False),
         "md": f"{page.to_markdown(index=False, floatfmt='.4g')}\n",
@@ -94,7 +88,7 @@ def _written(table: pd.DataFrame, stem: Path, row: dict[str, Any] | None = None)
     return [write_whole(stem.with_name(f"{stem.name}.{kind}"), texts[kind]) for kind in texts]
 
 
-def _shape_of(file: Path) -> tuple[Folding | VoxelPath, VoxelSolid | None]:
+def _shape_of(file: Path, moves: bool) -> tuple[Folding | VoxelPath, VoxelSolid | None]:
     """The folding or path in a file, and the solid stored beside it, if there is one."""
     from ..solid import Folding, VoxelPath, VoxelSolid
     from ..storage import load
@@ -103,19 +97,13 @@ def _shape_of(file: Path) -> tuple[Folding | VoxelPath, VoxelSolid | None]:
     shape = load(file)
     if not isinstance(shape, (Folding, VoxelPath)):
         raise ValueError(f"{file} holds a {type(shape).__name__}, and a folding or path is needed")
+    if moves and not isinstance(shape, Folding):
+        raise ValueError(f"{file} holds a path, and --through needs a folding")
     beside = file.with_name(f"{stored_name(file)}.solid.json")
     solid = load(beside) if beside.is_file() else None
     if solid is not None and not isinstance(solid, VoxelSolid):
         raise ValueError(f"{beside} does not hold a solid")
     return shape, solid
-
-
-def _folding(shape: Folding | VoxelPath, file: Path) -> Folding:
-    from ..solid import Folding
-
-    if not isinstance(shape, Folding):
-        raise ValueError(f"{file} holds a path, and --through needs a folding")
-    return shape
 
 
 def _shown(value: object) -> str:

@@ -27,6 +27,7 @@ _FOOT_EDGE = 0.5  # of the cubes under voxels that rest on the table
 _TITLES = ("the whole", "cut open at the worst face")
 _ROOM = 1.06  # around the model
 _MARK = "#1b4fd1"
+_LABELS = ("margin before it tips over, mm", "safety factor", "longest side, m")
 _GOOD, _BAD = "#2c7a51", "#c43c39"
 
 
@@ -165,7 +166,7 @@ def standing(table: pd.DataFrame) -> Figure:
     >>> from lineup import draw
     >>> folding = lu.fold(lu.VoxelSolid(np.ones((4, 3, 2), bool)), rounds=20, trial_rounds=5)
     >>> [axes.get_ylabel() for axes in draw.standing(lu.standing(folding)).axes]
-    ['margin, mm', 'safety factor', 'longest side, m']
+    ['margin before it tips over, mm', 'safety factor', 'longest side, m']
     """
     figure = page(7.5, 7.0)
     panels = figure.subplots(3, 1, sharex=True)
@@ -184,12 +185,11 @@ def standing(table: pd.DataFrame) -> Figure:
     panels[1].set_yscale("log")
     room = ordered[["box_x_mm", "box_y_mm", "box_z_mm"]].max(axis=1) / 1e3
     _curve(panels[2], ordered["folded"], room, np.full(len(ordered), INK))
-    for panel, label in zip(
-        panels, ("margin, mm", "safety factor", "longest side, m"), strict=True
-    ):
+    for panel, label in zip(panels, _LABELS, strict=True):
         panel.set_ylabel(label, fontsize=9, color=INK)
         panel.tick_params(labelsize=8)
         panel.grid(color=PALE, lw=0.6)
+        panel.set_axisbelow(True)
         panel.spines[["top", "right"]].set_visible(False)
     panels[2].set_xlabel("voxels folded", fontsize=9, color=INK)
     panels[0].set_title(

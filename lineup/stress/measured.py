@@ -87,7 +87,15 @@ def strength(
     -----
     Stresses are those of whole voxel faces: what a face bears, over a^2, as the paper's limits
     are for whole blocks. What happens within a block, in the neck of a hinge, is in the limits
-    that the paper measured, not in the model.
+    that the paper measured, not in the model. Shear and torsion are told and not judged, for the
+    paper measured no limit of them. Shifts are taken to be small, and what only pushes to be
+    smooth.
+
+    Chains one voxel thick are as statics and beam theory have them. The stress at the edge of a
+    beam three voxels high is within 1.3 % of theory, four high 2.2 %. Beside finite elements, of
+    one lump of resin without Poisson's ratio, face-mean tractions differ (root mean square) by
+    1.5 % in beams, 6 % in arches, 15 % in plates that stick out, the largest one by 3 %; with
+    Poisson's ratio the largest one by 8 %.
 
     Examples
     --------

@@ -43,7 +43,8 @@ def balanced(
     u = np.zeros(len(load))
     gap, left = contact @ u, load
     closed = np.ones(len(share), bool)
-    solve = solver(_held(stiffness, contact, share, closed), voxels)
+    sliding = bool((np.diff(contact.indptr) > 6).any())  # points between two voxels
+    solve = solver(_held(stiffness, contact, share, closed), voxels, sliding)
     sizes = abs(stiffness)
     for _ in range(_STEPS):
         step = solve(left)
@@ -55,7 +56,7 @@ def balanced(
             return u, share * np.maximum(-gap, 0)
         if not np.array_equal(gap < 0, closed):
             closed = gap < 0
-            solve = solver(_held(stiffness, contact, share, closed), voxels)
+            solve = solver(_held(stiffness, contact, share, closed), voxels, sliding)
     raise ArithmeticError(
         f"no balance found in {_STEPS} steps; {np.abs(left).max():.1e} voxel weights are left over"
     )
@@ -93,15 +94,16 @@ def _length(
     return float(brentq(slope, 0.0, end, xtol=1e-14, rtol=1e-12))
 
 
-def solver(matrix: Matrix, voxels: IntArray) -> Solver:
+def solver(matrix: Matrix, voxels: IntArray, sliding: bool = False) -> Solver:
     """What solves a system for any load: a factorization, or multigrid for large bodies.
 
-    Without velcro a body is a chain, and factorizing it is quick at any length. Multigrid is
-    smoothed aggregation with the six rigid movements, inside conjugate gradients; where that
-    does not come to an end, as with bonds of very unlike stiffness, the system is factorized.
+    Multigrid is smoothed aggregation with the six rigid movements, inside conjugate gradients;
+    where that does not come to an end, as with bonds of very unlike stiffness, the system is
+    factorized. So it is from the first where strands can slide along each other, which multigrid
+    is slow with, and for the chain alone, which is factorized quickly at any length.
     """
     blocks = matrix.tobsr((6, 6))
-    if len(voxels) <= DIRECT or len(blocks.indices) <= 3 * len(voxels):
+    if sliding or len(voxels) <= DIRECT or len(blocks.indices) <= 3 * len(voxels):
         return _factorized(matrix)
     import pyamg  # takes seconds, which small bodies need not wait for
 
