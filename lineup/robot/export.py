@@ -143,9 +143,9 @@ def _checked(folding: Folding | Motion, joints: str) -> Motion:
     motion = folding.motion if isinstance(folding, Folding) else folding
     if joints not in JOINTS:
         raise ValueError(f"unknown joints {joints!r}; known: {', '.join(JOINTS)}")
-    rows = slot_violations(motion) if joints == "slotted" else ()
-    if len(rows):
-        move, bar = (int(k) for k in rows[0])
+    rows = slot_violations(motion).tolist() if joints == "slotted" else []
+    if rows:
+        move, bar = rows[0]
         raise ValueError(
             f"move {move} would twist bar {bar} in its slots; "
             "lineup.fold(solid, joints='slotted') makes no such moves"
@@ -157,11 +157,11 @@ def _needs(
     survey: Survey, bodies: Bodies, told: dict[str, Any], actuators: Sequence[Actuator]
 ) -> pd.DataFrame:
     """What actuators give and what is needed; notes the arms that tell."""
-    weight = bodies.block_kg * told["gravity"] * bodies.pitch_m
-    arms = [float(most.max()) / weight for most in (survey.held_nm, survey.moved_nm)]
-    told["largest_held_block_pitches"], told["largest_moved_block_pitches"] = arms
-    share, seconds = told["actuator_share"], told["move_seconds"]
-    return comparison(*arms, bodies.pitch_m, told["gravity"], share, seconds, actuators)
+    gravity, share, seconds = told["gravity"], told["actuator_share"], told["move_seconds"]
+    weight = bodies.block_kg * gravity * bodies.pitch_m
+    held, moved = (float(most.max()) / weight for most in (survey.held_nm, survey.moved_nm))
+    told["largest_held_block_pitches"], told["largest_moved_block_pitches"] = held, moved
+    return comparison(held, moved, bodies.pitch_m, gravity, share, seconds, actuators)
 
 
 def _described(
