@@ -54,7 +54,7 @@ def judged(motion):
 
 
 @given(seeds, st.integers(4, 30))
-@settings(max_examples=25)
+@settings(max_examples=15)
 def test_what_twists_is_what_the_judge_says(seed, n):
     rng = np.random.default_rng(seed)
     voxels = even_walk(rng, n)
@@ -114,7 +114,7 @@ def twisting_peels(draw):
 
 
 @given(twisting_peels())
-@settings(max_examples=60)
+@settings(max_examples=40)
 def test_swaps_and_detours_with_room_are_free_and_keep_to_the_slots(case):
     voxels, state, end, capsule = case
     box, chain = chain_of(voxels)
