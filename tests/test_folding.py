@@ -155,7 +155,9 @@ def test_any_even_length_is_kept_to(occupancy, seed):
         assert len(trimmed.path) == length
         states = states_of(trimmed.motion)
         assert rod_fault(trimmed.path.voxels, states) == ""
-        assert np.array_equal(motion_of(trimmed.path.voxels, states).moves, trimmed.motion.moves)
+        # A motion that happens to keep to the slots is trimmed to one that does, made in their way.
+        made = [motion_of(trimmed.path.voxels, states, joints) for joints in ("free", "slotted")]
+        assert any(np.array_equal(one.moves, trimmed.motion.moves) for one in made)
 
 
 def test_a_path_shorter_than_the_length_is_returned_as_it_is():

@@ -55,14 +55,21 @@ def strength(
     elif isinstance(shape, Folding) and through > 0:
         table = stress.standing(shape, through, pitch_mm, density=density, bonding=bonding, up=up)
     if table is not None:
-        written += _written(table, out / f"{name}.standing")
-        written.append(draw.save(draw.standing(table), out / f"{name}.standing.png"))
-        some = table[table["folded"] > 0]
-        typer.echo(f"while folded: stands at {int(some['stands'].sum())} of {len(some)} moments")
+        written += _stood(table, out / f"{name}.standing")
     for place in written:
         typer.echo(f"written: {place}")
     fault = shortfall(result)
     end([f"{name}: {fault}"] if fault else [])
+
+
+def _stood(table: pd.DataFrame, stem: Path) -> list[Path]:
+    """How it stands while it is folded, said and written as STEM.csv, .md and .png."""
+    from .. import draw
+
+    some = table[table["folded"] > 0]
+    typer.echo(f"while folded: stands at {int(some['stands'].sum())} of {len(some)} moments")
+    written = _written(table, stem)
+    return [*written, draw.save(draw.standing(table), stem.with_name(f"{stem.name}.png"))]
 
 
 def _written(table: pd.DataFrame, stem: Path, row: dict[str, Any] | None = None) -> list[Path]:
