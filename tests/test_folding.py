@@ -13,8 +13,9 @@ from polycubes import polycubes
 
 import lineup as lu
 from lineup import grid
+from lineup.joints import slot_violations
 from lineup.kinematics import Move
-from lineup.motion.plan import motion_of, states_of
+from lineup.motion.plan import has_peel_plan, motion_of, states_of
 
 QUICK = {"trial_rounds": 20, "rounds": 60}
 
@@ -153,6 +154,9 @@ def test_any_even_length_is_kept_to(occupancy, seed):
         (trimmed,) = lu.trim([folding], length)
         check_folding(trimmed, solid)
         assert len(trimmed.path) == length
+        if not has_peel_plan(trimmed.motion):  # one for slots that is not read back
+            assert not len(slot_violations(trimmed.motion))
+            continue
         states = states_of(trimmed.motion)
         assert rod_fault(trimmed.path.voxels, states) == ""
         # A motion that happens to keep to the slots is trimmed to one that does, made in their way.

@@ -208,7 +208,7 @@ def test_slotted_plans_are_kept_and_come_back_from_their_motions(seed, n, side):
     motion = plan.motion_of(voxels, states, "slotted")
     check_motion(motion)
     assert judged(motion) == (True, 0)
-    if motion.straight:
+    if plan.has_peel_plan(motion):  # a few straight ones are not read back, and are planned anew
         again = plan.states_of(motion)
         assert rod_fault(voxels, again) == ""
         assert np.array_equal(plan.motion_of(voxels, again, "slotted").moves, motion.moves)
