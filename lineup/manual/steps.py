@@ -78,13 +78,14 @@ def _units(places: IntArray, actions: Sequence[Action]) -> Iterator[_Run]:
 
 
 def _cut(units: list[_Run]) -> Iterator[_Run]:
-    """Units of one run, joined to as few parts of at most `MOST` voxels as there can be."""
+    """Units of one run, joined to few parts of like size and at most `MOST` voxels."""
     n_voxels = sum(unit.n_voxels for unit in units)
     n_parts = -(-n_voxels // MOST)
     part: _Run | None = None
     done = 0
     for unit in units:
-        if part is not None and done * n_parts >= n_voxels:
+        full = part is not None and part.n_voxels + unit.n_voxels > MOST
+        if part is not None and (full or done * n_parts >= n_voxels):
             yield part
             part, done = None, done - -(-n_voxels // n_parts)
         part = unit if part is None else _joined(part, unit)._replace(n_runs=1)
