@@ -20,11 +20,6 @@ WARM_UP = 60
 """Voxels of the ball that compiles the kernels before the clock runs."""
 
 
-@app.callback()
-def main() -> None:
-    """How much of a solid is folded, how surely and how fast."""
-
-
 @app.command()
 def coverage(
     solid: Annotated[list[str] | None, typer.Option(help="A model; without it, all.")] = None,
@@ -41,6 +36,40 @@ def coverage(
             table = pd.DataFrame(rows)
             write(table, out, "folding")
             write(medians(table), out, "folding_medians")
+
+
+@app.command()
+def layered(
+    solid: Annotated[list[str] | None, typer.Option(help="A model; without it, all.")] = None,
+    voxels: Sizes = (1600,),
+    out: Out = Path("results"),
+) -> None:
+    """How far peels straighten the layered path of every model: OUT/layered.csv and .md."""
+    lu.unfold(lu.layered_path(solid_of("ball", WARM_UP)), "peel", rounds=1)
+    rows: list[dict[str, Any]] = []
+    for target in voxels:
+        for name in solid or models():
+            shape = solid_of(name, target)
+            rows += [
+                {"solid": name, "source": shape.source["kind"], "voxels": shape.size} | found
+                for found in peeled(lu.layered_path(shape))
+            ]
+            typer.echo("{solid} {path}: {straight} with limbs".format(**rows[-1]))
+            write(pd.DataFrame(rows), out, "layered")
+
+
+def peeled(path: lu.VoxelPath) -> list[dict[str, Any]]:
+    """A row without limb moves, and one with them."""
+    rows = []
+    for limbs, rounds in ((False, 0), (True, 100)):
+        begun = time.process_time()
+        motion = lu.unfold(path, "peel", rounds=rounds)
+        seconds = time.process_time() - begun
+        verdict = lu.certify(motion, DIAMETER, MAX_BEND_DEG)
+        row = {"path": len(path), "limbs": limbs, "straight": motion.straight}
+        certified = verdict.ok and motion.straight
+        rows.append(row | {"certified": certified, "moves": len(motion), "seconds": seconds})
+    return rows
 
 
 def measured(solid: lu.VoxelSolid) -> dict[str, Any]:

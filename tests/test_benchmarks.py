@@ -93,6 +93,16 @@ def test_folding_on_a_tiny_solid(tmp_path):
     assert medians["median_coverage"].tolist() == table["coverage"].tolist()
 
 
+def test_layered_paths_peeled_on_a_tiny_solid(tmp_path):
+    run("layered", "--solid", "ball", "--voxels", 40, "--out", tmp_path, app=folding.app)
+    table = pd.read_csv(tmp_path / "layered.csv")
+    assert table["limbs"].tolist() == [False, True]
+    path = lu.layered_path(paths.solid_of("ball", 40))
+    alone = lu.unfold(path, "peel", rounds=0)
+    assert table["straight"][0] == table["certified"][0] == alone.straight
+    assert table["straight"][1] >= table["straight"][0]
+
+
 def test_strength_on_a_tiny_solid(tmp_path):
     chosen = ["--model", "duck", "--voxels", 40, "--moments", 3]
     run(*chosen, "--out", tmp_path, "--pictures", tmp_path, app=strength.app)

@@ -247,6 +247,18 @@ def test_a_pulled_motion_is_judged_for_the_bars_it_needs(lineup, tmp_path):
     assert "certified (diameter 0.866, bends up to 120°, clearance 0.8660" in out
 
 
+def test_unfold_for_slotted_joints(lineup, tmp_path):
+    lu.save(lu.VoxelSolid(np.ones((3, 3, 2), bool)), tmp_path / "c.solid.json")
+    lineup("path", "c.solid.json")
+    assert lineup("unfold", "c.path.json")[0] == 0
+    free = lu.load(tmp_path / "c.folding.json").motion
+    assert not lu.certify(free, joints="slotted").ok
+    assert lineup("unfold", "c.path.json", "--joints", "slotted")[0] == 0
+    slotted = lu.load(tmp_path / "c.folding.json").motion
+    assert lu.certify(slotted, joints="slotted").ok
+    assert slotted.reason == "straight: peel, since one tilt would twist blocks"
+
+
 def test_a_name_with_dots_keeps_them(lineup, tmp_path):
     lu.save(lu.VoxelSolid(np.ones((2, 3, 1), bool)), tmp_path / "c.v2.solid.json")
     assert lineup("path", "c.v2.solid.json")[0] == 0

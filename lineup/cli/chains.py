@@ -199,6 +199,7 @@ def unfold(
     file: Annotated[Path, typer.Argument(help="A stored path, NAME.path.json.")],
     method: Annotated[str, typer.Option(help="How to plan the motion.")] = "auto",
     seed: Seed = 0,
+    joints: Joints = "free",
     out: Out = Path("."),
 ) -> None:
     """Write a motion that straightens it: NAME.folding.json."""
@@ -211,8 +212,9 @@ def unfold(
     stored = load(file)
     if not isinstance(stored, VoxelPath):
         raise ValueError(f"{file} holds a {type(stored).__name__}, and a path is needed")
-    found = motion.unfold(stored, method=method, seed=seed)
-    verdict = certify(found, found.diameter, found.max_bend_deg)
+    options = {} if joints == "free" else {"joints": joints}
+    found = motion.unfold(stored, method=method, seed=seed, **options)
+    verdict = certify(found, found.diameter, found.max_bend_deg, joints=joints)
     out.mkdir(parents=True, exist_ok=True)
     name = stored_name(file)
     written = save(Folding(stored, found), out / f"{name}.folding.json")

@@ -82,7 +82,8 @@ def _auto(
         return replace(tilted, reason="straight: accordion, since the path is monotone")
     peeled = peel(path, seed, tries=tries, patience=patience, rounds=rounds, joints=joints)
     if peeled.straight:
-        return replace(peeled, reason=f"{peeled.reason}: peel, since the path is not monotone")
+        why = "one tilt would twist blocks" if tilted.straight else "the path is not monotone"
+        return replace(peeled, reason=f"{peeled.reason}: peel, since {why}")
     why = f"peel is {peeled.reason}"
     if thin and joints == "free":
         pulled = pull(path, seed)
