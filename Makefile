@@ -5,7 +5,7 @@ PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
-EXTRAS := notebooks,exact,test
+EXTRAS := notebooks,exact,site,test
 WANTED := --constraint constraints.txt --editable ".[$(EXTRAS)]"
 
 # Without a display the window must come from EGL, or VTK crashes at the first picture.
@@ -36,10 +36,13 @@ benchmarks: $(STAMP)  ## Our paths beside those of other tools, and how their ti
 	$(BIN)/python benchmarks/paths.py peers
 	$(BIN)/python benchmarks/paths.py growth
 
+site: $(STAMP)  ## The documentation: site/docs/index.html
+	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going -c docs . site
+
 setup: $(STAMP)  ## The virtual environment alone
 
 clean:  ## Remove results and caches; the virtual environment stays
-	rm -rf results out .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf results out site .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find lineup tests -name __pycache__ -prune -exec rm -rf {} +
 
 help:  ## This list
@@ -58,4 +61,4 @@ $(STAMP): pyproject.toml constraints.txt
 	@$(BIN)/python -c 'import lineup as lu; lu.lineup(["duck"], blocks=40)'
 	@touch $@
 
-.PHONY: reproduce test lint lab notebooks benchmarks setup clean help
+.PHONY: reproduce test lint lab notebooks benchmarks site setup clean help
