@@ -16,14 +16,16 @@ STEPS = [tuple(d) for d in grid.DIRECTIONS.tolist()]
 @st.composite
 def polycubes(draw: Any, max_voxels: int = 40) -> NDArray[np.bool_]:
     """A bool array with one face-connected, void-free component of 1 to `max_voxels` voxels."""
-    voxels: set[tuple[int, int, int]] = set()
-    rim = {(0, 0, 0)}
-    for _ in range(draw(st.integers(1, max_voxels))):
-        x, y, z = draw(st.sampled_from(sorted(rim)))
-        voxels.add((x, y, z))
-        rim |= {(x + dx, y + dy, z + dz) for dx, dy, dz in STEPS}
-        rim -= voxels
-    points = np.array(sorted(voxels))
+    seen = {(0, 0, 0)}
+    voxels, rim = [], [(0, 0, 0)]
+    n = draw(st.integers(1, max_voxels))
+    for choice in draw(st.lists(st.integers(0, 2**16), min_size=n, max_size=n)):
+        x, y, z = rim.pop(choice % len(rim))
+        voxels.append((x, y, z))
+        around = [(x + dx, y + dy, z + dz) for dx, dy, dz in STEPS]
+        rim += [place for place in around if place not in seen]
+        seen.update(around)
+    points = np.array(voxels)
     points -= points.min(axis=0)
     occupancy = np.zeros(points.max(axis=0) + 1, bool)
     occupancy[tuple(points.T)] = True

@@ -54,11 +54,11 @@ def test_growth_on_tiny_solids(tmp_path):
 
 def test_coverage_on_a_tiny_solid(tmp_path):
     methods = ["--method", "layered", "--method", "ufree"]
-    run("coverage", "--solid", "ball", "--voxels", 40, "--voxels", 60, *methods, "--out", tmp_path)
+    run("coverage", "--solid", "ball", "--voxels", 16, "--voxels", 24, *methods, "--out", tmp_path)
     table = pd.read_csv(tmp_path / "coverage.csv")
-    ball = paths.solid_of("ball", 40)
+    ball = paths.solid_of("ball", 16)
     bound = lu.path_bound(ball, u_free=True) / ball.size
-    row = table[(table["method"] == "ufree") & (table["target"] == 40)].iloc[0]
+    row = table[(table["method"] == "ufree") & (table["target"] == 16)].iloc[0]
     assert (row["bound"], row["gap"]) == (bound, bound - row["coverage"])
     medians = pd.read_csv(tmp_path / "medians.csv")
     assert medians["models"].tolist() == [1] * 4

@@ -131,7 +131,7 @@ def check_notes(fold, body):
 
 
 @given(polycubes(60), st.integers(0, 2**32 - 1))
-@settings(max_examples=40)
+@settings(max_examples=20)
 def test_plan_and_notes_stay_true_through_random_changes(occupancy, seed):
     if occupancy.sum() < 2:
         return

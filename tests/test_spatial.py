@@ -91,7 +91,7 @@ def annealed(occupancy, seed, rounds=12, proposals=40):
         yield board
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(polycubes(50), st.integers(0, 9))
 def test_the_state_is_what_the_links_say(occupancy, seed):
     assume(occupancy.sum() > 1)
