@@ -1,22 +1,23 @@
 """What folded chains bear: symmetry, scale, what is what, planted faults and refusals."""
 
+from contextlib import suppress
 from itertools import permutations, product
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.sparse.linalg import splu
 from strands import LEANING, boustrophedon, level, path, walk
 
 import lineup as lu
-from lineup.stress import faces, measured, network, solving
+from lineup.stress import dissection, faces, measured, network, solving
 from lineup.stress.contacts import table_points
 from lineup.stress.results import (
     BUCKLING_N,
     RESIN_PA,
     TENSION_PA,
     Setting,
-    rounded,
     shortfall,
     summary,
 )
@@ -143,18 +144,73 @@ def test_a_sag_beyond_the_model_is_told():
 # Solvers
 
 
-def test_multigrid_and_factors_agree_and_chance_has_no_part(monkeypatch):
+def system(voxels, bonding):
+    """The stiffness of a body on a table where all points push, and its weight."""
+    caught = []
+
+    def catch(stiffness, load, contact, share, _):
+        caught.append(((stiffness + contact.T @ contact.multiply(share[:, None])).tocsr(), load))
+        return np.zeros(len(load)), np.zeros(len(share))
+
+    with pytest.MonkeyPatch.context() as patch, suppress(ArithmeticError):
+        patch.setattr(measured, "balanced", catch)
+        lu.strength(path(voxels), bonding=bonding)
+    return caught[0]
+
+
+@pytest.mark.parametrize("small", [8, 24])
+@pytest.mark.parametrize("bonding", sorted(faces.BONDINGS))
+def test_factors_of_parts_solve_the_system(bonding, small, monkeypatch):
+    """Against SuperLU; a body of several parts, with a gap that a cut finds."""
+    monkeypatch.setattr(dissection, "SMALL", small)
+    voxels = boustrophedon(7, 5, 4)
+    voxels = np.vstack([voxels, voxels[-1:] + [(0, 0, k) for k in range(1, 30)]])
+    matrix, load = system(voxels, bonding)
+    found = dissection.factorized(dissection.dissected(voxels, matrix), matrix)(load)
+    expected = splu(matrix.tocsc()).solve(load)
+    np.testing.assert_allclose(found, expected, rtol=1e-7, atol=1e-9 * np.abs(expected).max())
+
+
+@given(st.integers(0, 10**6), st.integers(10, 60))
+def test_parts_are_cut_apart(seed, length):
+    voxels = walk(seed, length, (5, 4, 5))
+    if len(voxels) < 2:
+        return
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(dissection, "SMALL", 8)
+        inner = faces.inner_faces(voxels, lu.Bonding())
+        ties = network.stretch(inner, len(voxels))
+        found = dissection.dissected(voxels, (ties.T @ ties).tocsr())
+    assert sorted(found.order) == list(range(len(voxels)))
+    part_of = np.repeat(range(len(found.parts)), [p.stop - p.start for p in found.parts])
+    above = {k: number for number, part in enumerate(found.parts) for k in part.below}
+    place = np.argsort(found.order)
+    for pair in zip(inner.first, inner.second, strict=True):
+        low, high = sorted(int(part_of[place[v]]) for v in pair)
+        while low < high:
+            low = above[low]  # what touches is in one line of parts
+        assert low == high
+
+
+def test_what_is_not_positive_definite_has_no_cholesky_factors():
+    voxels = boustrophedon(4, 4, 3)
+    matrix, _ = system(voxels, "velcro")
+    with pytest.raises(np.linalg.LinAlgError):
+        dissection.factorized(dissection.dissected(voxels, matrix), -matrix)
+
+
+@pytest.mark.parametrize("bonding", ["none", "solid"])
+def test_factors_that_serve_for_several_steps_lead_to_the_same(bonding, monkeypatch):
     shape = path(boustrophedon(6, 5, 3))
-    direct = lu.strength(shape, bonding="velcro")
-    monkeypatch.setattr(solving, "DIRECT", 0)
-    several = []
-    for seed in (0, 1):
-        np.random.seed(seed)  # noqa: NPY002  (what a library might draw from)
-        several.append(lu.strength(shape, bonding="velcro"))
-    assert several[0].table.equals(several[1].table)
-    a, b = (r.table["tension_pa"].dropna().to_numpy() for r in (direct, several[0]))
+    often = lu.strength(shape, bonding=bonding)
+    again = lu.strength(shape, bonding=bonding)
+    assert often.table.equals(again.table)
+    monkeypatch.setattr(
+        solving, "_near", lambda matrix, load, _: (splu(matrix.tocsc()).solve(load), True)
+    )
+    plain = lu.strength(shape, bonding=bonding)
+    a, b = (r.table["tension_pa"].dropna().to_numpy() for r in (often, plain))
     np.testing.assert_allclose(a, b, atol=1e-6 * a.max())
-    assert rounded(direct.table).equals(rounded(several[0].table))
 
 
 def test_no_end_is_an_error_and_not_a_result(monkeypatch):

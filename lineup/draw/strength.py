@@ -180,9 +180,7 @@ def standing(table: pd.DataFrame) -> Figure:
     panels[0].axhline(0, color=_BAD, lw=1)
     panels[0].text(0.01, 0.04, "tips over", transform=panels[0].transAxes, color=_BAD, fontsize=9)
     held = some[some["stands"]]
-    panels[1].scatter(held["folded"], held["safety"], c=_GOOD, s=28)
-    panels[1].axhline(1, color=_BAD, lw=1)
-    panels[1].set_yscale("log")
+    _safety(panels[1], held)
     room = ordered[["box_x_mm", "box_y_mm", "box_z_mm"]].max(axis=1) / 1e3
     _curve(panels[2], ordered["folded"], room, np.full(len(ordered), INK))
     for panel, label in zip(panels, _LABELS, strict=True):
@@ -203,3 +201,13 @@ def standing(table: pd.DataFrame) -> Figure:
 def _curve(axes: Axes, x: pd.Series, y: pd.Series, colours: np.ndarray) -> None:
     axes.plot(x.to_numpy(), y.to_numpy(), color=PALE, lw=1.5, zorder=1)
     axes.scatter(x.to_numpy(), y.to_numpy(), c=list(colours), s=28, zorder=2)
+
+
+def _safety(axes: Axes, held: pd.DataFrame) -> None:
+    axes.scatter(held["folded"], held["safety"], c=_GOOD, s=28)
+    axes.axhline(1, color=_BAD, lw=1)
+    axes.set_yscale("log")
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.set_ylim(bottom=min([0.5, *(0.8 * held["safety"])]))
+    left = axes.get_yaxis_transform()
+    axes.text(0.01, 0.97, "gives way", transform=left, color=_BAD, fontsize=9, va="top")

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from ..grid import FloatArray, IntArray
+from ..grid import FloatArray
 from .contacts import Points
 from .faces import Faces
 
@@ -70,15 +70,6 @@ def weights(n: int, up: FloatArray) -> FloatArray:
     load = np.zeros((n, 6))
     load[:, :3] = -up
     return load.ravel()
-
-
-def modes(voxels: IntArray) -> FloatArray:
-    """(6n, 6) shifts and turns of all voxels as one rigid body."""
-    x = voxels - voxels.mean(axis=0)
-    rigid = np.tile(np.eye(6), (len(x), 1, 1))
-    rigid[:, :3, 3:] = -_cross(x)
-    found: FloatArray = rigid.reshape(-1, 6)
-    return found
 
 
 def face_forces(faces: Faces, displacement: FloatArray) -> tuple[FloatArray, FloatArray]:

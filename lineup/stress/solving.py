@@ -2,28 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from scipy import sparse
+from scipy.linalg import LinAlgError
 from scipy.optimize import brentq
 from scipy.sparse.linalg import splu
 
 from ..grid import BoolArray, FloatArray, IntArray
-from .network import Matrix, modes
-
-DIRECT = 2000
-"""Voxels up to which a system is factorized; beyond, multigrid is faster and lighter."""
+from .dissection import Matrix, Parts, Solver, dissected, factorized
 
 BALANCED = 1e-9
 """A force or moment that may be left over on a voxel, as a share of the body's weight."""
 
 _STEPS = 200
+_NEAR = 8  # steps of conjugate gradients, which take as long as to factorize anew
+_ENOUGH = 0.03  # of the energy norm of the error; the set of points is not the last one
 _OPEN = 1e-6  # what keeps a step from running away where nothing else holds a part of the body
 _RELATIVE = 1e-9
 _ROUNDING = 8 * float(np.finfo(float).eps)
-
-Solver = Callable[[FloatArray], FloatArray]
 
 
 def balanced(
@@ -33,7 +29,8 @@ def balanced(
 
     The energy ``u K u / 2 - f u + sum of share * min(0, c u)^2 / 2`` is convex, and where it is
     least, points that push are closed and points that are open do not push. Newton's method
-    finds the set of points that push; each step goes as far as the energy falls.
+    finds the set of points that push; each step goes as far as the energy falls. Factors serve
+    for several steps, as long as they lead to the next one quickly.
 
     Raises
     ------
@@ -43,23 +40,49 @@ def balanced(
     u = np.zeros(len(load))
     gap, left = contact @ u, load
     closed = np.ones(len(share), bool)
-    sliding = bool((np.diff(contact.indptr) > 6).any())  # points between two voxels
-    solve = solver(_held(stiffness, contact, share, closed), voxels, sliding)
+    held = _held(stiffness, contact, share, closed)
+    cut = dissected(voxels, held)
+    solve, fresh = solver(held, cut), True
     sizes = abs(stiffness)
     for _ in range(_STEPS):
-        step = solve(left)
+        step, enough = (solve(left), True) if fresh else _near(held, left, solve)
         u = u + _length(float(step @ left), step, stiffness, gap, contact @ step, share) * step
         gap = contact @ u
         left = load - stiffness @ u - contact.T @ (share * np.minimum(gap, 0))
         limit = max(BALANCED * len(voxels), _ROUNDING * float((sizes @ np.abs(u)).max()))
         if np.abs(left).max() <= limit:
             return u, share * np.maximum(-gap, 0)
-        if not np.array_equal(gap < 0, closed):
-            closed = gap < 0
-            solve = solver(_held(stiffness, contact, share, closed), voxels, sliding)
+        before, closed = closed, gap < 0
+        same = np.array_equal(closed, before)
+        if not same:
+            held, fresh = _held(stiffness, contact, share, closed), False
+        if not fresh and (same or not enough):
+            solve, fresh = solver(held, cut), True
     raise ArithmeticError(
         f"no balance found in {_STEPS} steps; {np.abs(left).max():.1e} voxel weights are left over"
     )
+
+
+def _near(matrix: Matrix, load: FloatArray, solve: Solver) -> tuple[FloatArray, bool]:
+    """A step towards the solution of a system by what solves a like one, and if it is enough.
+
+    Conjugate gradients, which the factors of a like system lead there quickly. It is a step
+    along which the energy falls also where they have not come far.
+    """
+    found, left = np.zeros(len(load)), load
+    way = towards = solve(left)
+    start = pull = float(left @ towards)
+    for _ in range(_NEAR):
+        pushed = matrix @ way
+        share = pull / float(way @ pushed)
+        found = found + share * way
+        left = left - share * pushed
+        towards = solve(left)
+        before, pull = pull, float(left @ towards)
+        if pull <= _ENOUGH**2 * start:
+            return found, True
+        way = towards + pull / before * way
+    return found, False
 
 
 def _held(stiffness: Matrix, contact: Matrix, share: FloatArray, closed: BoolArray) -> Matrix:
@@ -94,40 +117,21 @@ def _length(
     return float(brentq(slope, 0.0, end, xtol=1e-14, rtol=1e-12))
 
 
-def solver(matrix: Matrix, voxels: IntArray, sliding: bool = False) -> Solver:
-    """What solves a system for any load: a factorization, or multigrid for large bodies.
+def solver(matrix: Matrix, cut: Parts) -> Solver:
+    """What solves a system for any load.
 
-    Multigrid is smoothed aggregation with the six rigid movements, inside conjugate gradients;
-    where that does not come to an end, as with bonds of very unlike stiffness, the system is
-    factorized. So it is from the first where strands can slide along each other, which multigrid
-    is slow with, and for the chain alone, which is factorized quickly at any length.
+    The chain alone is nearly a band and so soft that Cholesky factors may not exist for rounding;
+    it has others.
     """
-    blocks = matrix.tobsr((6, 6))
-    if sliding or len(voxels) <= DIRECT or len(blocks.indices) <= 3 * len(voxels):
-        return _factorized(matrix)
-    import pyamg  # takes seconds, which small bodies need not wait for
-
-    levels = pyamg.smoothed_aggregation_solver(
-        blocks,
-        B=modes(voxels),
-        strength=("symmetric", {"theta": 0.0}),
-        smooth=("jacobi", {"omega": 4 / 3, "weighting": "local"}),
-        max_coarse=300,
-    )
-    direct: list[Solver] = []
-
-    def solve(load: FloatArray) -> FloatArray:
-        if not direct:
-            found: FloatArray = levels.solve(load, tol=_RELATIVE, accel="cg", maxiter=400)
-            if np.linalg.norm(matrix @ found - load) <= 10 * _RELATIVE * np.linalg.norm(load):
-                return found
-            direct.append(_factorized(matrix))
-        return direct[0](load)
-
-    return solve
+    if len(matrix.tobsr((6, 6)).indices) <= 3 * len(cut.order):
+        return _by_pivots(matrix)
+    try:
+        return factorized(cut, matrix)
+    except LinAlgError:
+        return _by_pivots(matrix)
 
 
-def _factorized(matrix: Matrix) -> Solver:
+def _by_pivots(matrix: Matrix) -> Solver:
     factors = splu(
         matrix.tocsc(),
         permc_spec="MMD_AT_PLUS_A",
