@@ -4,6 +4,7 @@ Each function returns a matplotlib figure; `save` writes it.
 """
 
 from .animation import animation
+from .apart import layer, nodes, storeys
 from .decomposition import decomposition
 from .ends import overlap, shared_links
 from .files import save
@@ -16,7 +17,6 @@ from .regions import checkerboard, contraction, merge, planar_steps
 from .scenarios import run
 from .scenes import chain, contact_sheet, layering, solid, solids
 from .shares import assumptions
-from .storeys import layer, nodes, storeys
 from .strength import standing, strength
 
 __all__ = [
