@@ -137,7 +137,7 @@ print(f"{torus.size} voxels, Euler number {torus.source['euler_solid']}")
 draw.solid(torus)
 
 # %% [markdown]
-# ## The task
+# ## The task (Algorithm 1, Figure 1)
 #
 # Section 3 states it: given such solids, find for each a solid of equally many voxels that still
 # looks like it, so that one chain of blocks forms them all and folds from each into each. One
