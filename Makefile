@@ -16,7 +16,7 @@ endif
 reproduce: $(STAMP)  ## Table 2 of the paper: results/table2.csv, .md, .tex
 	$(BIN)/lineup table2
 
-test: $(STAMP)  ## The default tests (add the long ones with: .venv/bin/pytest -m slow)
+test: $(STAMP)  ## The default tests (then the others: .venv/bin/pytest -m slow, or -m notebook)
 	$(BIN)/python -m pytest -n 2 -q
 
 lint: $(STAMP)  ## Style and types

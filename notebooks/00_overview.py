@@ -123,4 +123,7 @@ print(f"the line is {extent.max() + 1:.0f} voxels long and one wide")
 # - Unless you have fetched the paper's mesh (`lineup models --fetch`), the bunny is a stand-in
 #   made of smooth blobs.
 #
-# `PAPER.md` lists all deviations. To do this with ten models, run `lineup table2`.
+# `PAPER.md` lists all deviations, and which notebook shows what. To do this with ten models, run
+# `lineup table2`.
+#
+# Next: `01_voxels`, and then section by section.

@@ -29,10 +29,10 @@ ORDER = [
         "notation",
         "judging",
     ),
-    *("meshes", "implicit", "shapes", "sampling", "voxelization", "catalog"),
+    *("meshes", "implicit", "shapes", "sampling", "voxelization", "catalog", "worked"),
     *("visits", "reeb", "planar", "linking", "assumptions", "paper", "spatial", "refinement"),
     *("layered", "bounds", "subset_sums", "contraction"),
-    *("motion", "folding", "trimming", "transformation", "scenarios"),
+    *("motion", "folding", "trimming", "symbols", "transformation", "scenarios"),
     *("stress", "storage", "robot", "verification", "pipeline", "_sources", "engines", "sweep"),
     *("tables",),
     *("block", "draw", "viewer", "fabrication", "manual"),
@@ -155,6 +155,52 @@ def test_notebooks_are_thin(notebook):
         assert len(source.splitlines()) <= 12
         kinds = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.While)
         assert not [n for n in ast.walk(ast.parse(source)) if isinstance(n, kinds)]
+
+
+def sections(notebook: Path) -> Iterator[tuple[str, str, str]]:
+    """Title, words and code of each part of a notebook that begins with a heading."""
+    title, words, code = "", "", ""
+    for cell in json.loads(notebook.read_text())["cells"]:
+        source = "".join(cell["source"])
+        if cell["cell_type"] == "code":
+            code += source + "\n"
+        elif source.startswith("#"):
+            if title:
+                yield title, words, code
+            title, _, words = source.partition("\n")
+            code = ""
+        else:
+            words += "\n\n" + source
+    yield title, words, code
+
+
+@pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda f: f.stem)
+def test_notebooks_are_built_alike(notebook):
+    (title, question, set_up), *parts = sections(notebook)
+    assert title.startswith("# ")
+    assert "?" in question
+    assert len(re.findall(r"^(import|from) ", set_up, re.M)) <= 5
+    assert [title for title, _, _ in parts if not title.startswith("## ")] == []
+    assert [code for _, _, code in parts if re.search(r"^(import|from) ", code, re.M)] == []
+    *claims, (closing, last_words, _) = parts
+    assert closing == "## Where this differs from the paper"
+    assert re.search(r"\bNext\b", last_words), "the last lines say what comes next"
+    assert [title for title, _, code in claims if code and "assert" not in code] == []
+
+
+@pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda f: f.stem)
+def test_a_figure_of_a_notebook_is_one_call(notebook):
+    for cell in code_cells(notebook):
+        source = re.sub(r"^%.*$", "", "".join(cell["source"]), flags=re.M)
+        assert "plt." not in source
+        assert len(re.findall(r"^draw\.", source, re.M)) <= 1
+        pictures = [o for o in cell["outputs"] if "image/jpeg" in o.get("data", {})]
+        assert len(pictures) == len(re.findall(r"^draw\.", source, re.M))
+
+
+@pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda f: f.stem)
+def test_no_state_of_widgets_is_committed(notebook):
+    assert "application/vnd.jupyter" not in notebook.read_text()
 
 
 @pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda f: f.stem)

@@ -32,6 +32,7 @@ def run(notebook, kernel):
             kernel.execute_cell(cell, k)
 
 
+@pytest.mark.notebook
 @pytest.mark.parametrize("name", NAMES)
 def test_a_notebook_runs(name, kernel):
     notebook = jupytext.read(FOLDER / f"{name}.py")
@@ -46,6 +47,7 @@ def test_a_notebook_runs(name, kernel):
     assert len(pictures) == calls > 0
 
 
+@pytest.mark.notebook
 def test_what_a_notebook_does_not_define_it_does_not_have(kernel):
     cells = [nbformat.v4.new_code_cell(source) for source in ("seen = 1", "seen")]
     run(nbformat.v4.new_notebook(cells=cells), kernel)

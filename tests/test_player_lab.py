@@ -1,25 +1,18 @@
 """The player in JupyterLab: run in a cell, led by hand and from Python, and in a saved notebook."""
 
-import os
-import secrets
-import socket
-import subprocess
-import sys
-import time
-import urllib.request
-from contextlib import contextmanager, suppress
-
 import numpy as np
 import pytest
-from browser import BROWSER, colourful, launched, seen
+from browser import BROWSER, colourful, seen
 
 import lineup as lu
 
-api = pytest.importorskip("playwright.sync_api")
+pytest.importorskip("playwright.sync_api")
 nbclient = pytest.importorskip("nbclient")
 nbformat = pytest.importorskip("nbformat")
 for package in ("anywidget", "jupyterlab"):
     pytest.importorskip(package)
+
+from laboratory import opener, run  # noqa: E402
 
 pytestmark = [
     pytest.mark.slow,
@@ -53,74 +46,11 @@ def folder(tmp_path_factory):
     return folder
 
 
-@contextmanager
-def laboratory(folder):
-    """JupyterLab on a free port of this machine alone: the address of its notebooks, a token."""
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-    token = secrets.token_hex(16)
-    settings = [
-        "--no-browser",
-        "--allow-root",
-        "--ip=127.0.0.1",
-        f"--port={port}",
-        f"--IdentityProvider.token={token}",
-        f"--ServerApp.root_dir={folder}",
-        "--LabApp.news_url=",
-        "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate",
-    ]
-    environment = os.environ | {"JUPYTER_CONFIG_DIR": str(folder / "config")}
-    with subprocess.Popen(
-        [sys.executable, "-m", "jupyter", "lab", *settings],
-        env=environment,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    ) as server:
-        try:
-            answered(f"http://127.0.0.1:{port}/api")
-            yield f"http://127.0.0.1:{port}/lab/tree/{{}}?token={token}&reset"
-        finally:
-            server.terminate()
-
-
-def answered(address):
-    for _ in range(240):
-        try:
-            with urllib.request.urlopen(address, timeout=1):
-                return
-        except OSError:
-            time.sleep(0.5)
-    raise TimeoutError(address)
-
-
 @pytest.fixture(scope="module")
 def notebook(folder):
-    """Open a notebook by its name, in a tab of a browser."""
-    with laboratory(folder) as address, api.sync_playwright() as engine:
-        browser = launched(engine, "webgl")
-
-        def opened(name):
-            page = browser.new_page(viewport={"width": 1200, "height": 1000})
-            page.set_default_timeout(60_000)
-            page.goto(address.format(name))
-            page.wait_for_selector(".jp-Notebook .jp-Cell")
-            page.wait_for_selector(".jp-Notebook-ExecutionIndicator[data-status=idle]")
-            return page
-
+    """Open a notebook by its name."""
+    with opener(folder) as opened:
         yield opened
-        browser.close()
-
-
-def run(page, cell, holds):
-    """Run a cell as a hand does, once more if the notebook was not ready for it, and wait."""
-    for _ in range(4):
-        page.locator(".jp-Cell .jp-InputArea-editor").nth(cell).click()
-        page.keyboard.press("Shift+Enter")
-        with suppress(api.TimeoutError):
-            page.wait_for_function(holds, timeout=30_000)
-            return
-    raise TimeoutError(holds)
 
 
 def test_a_player_in_a_cell_plays_and_is_in_step_with_python(notebook):

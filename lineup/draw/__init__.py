@@ -4,19 +4,24 @@ Each function returns a matplotlib figure; `save` writes it.
 """
 
 from .animation import animation
+from .apart import layer, nodes, storeys
 from .decomposition import decomposition
+from .ends import overlap, shared_links
 from .files import save
+from .interactive import explore
 from .linkages import depths, projection, two_stages
 from .moments import unfolding
 from .plans import layers, reeb
 from .printed import block, slots
 from .regions import checkerboard, contraction, merge, planar_steps
 from .scenarios import run
-from .scenes import chain, contact_sheet, layering, solid
+from .scenes import chain, contact_sheet, layering, solid, solids
+from .shares import assumptions
 from .strength import standing, strength
 
 __all__ = [
     "animation",
+    "assumptions",
     "block",
     "chain",
     "checkerboard",
@@ -24,17 +29,24 @@ __all__ = [
     "contraction",
     "decomposition",
     "depths",
+    "explore",
+    "layer",
     "layering",
     "layers",
     "merge",
+    "nodes",
+    "overlap",
     "planar_steps",
     "projection",
     "reeb",
     "run",
     "save",
+    "shared_links",
     "slots",
     "solid",
+    "solids",
     "standing",
+    "storeys",
     "strength",
     "two_stages",
     "unfolding",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -17,13 +17,26 @@ from .plans import MSCS, MSP, places
 
 _MOST = 5
 _WIDE, _NARROW, _LAYER = 4.2, 2.6, 0.3  # inches: the walk, each of its parts, a layer
+_ARROW = {
+    "arrowstyle": "-|>,head_width=0.15,head_length=0.3",
+    "lw": 1.4,
+    "shrinkA": 7,
+    "shrinkB": 7,
+}
 
 
-def decomposition(graph: ReebGraph, traversal: Traversal) -> Figure:
+def decomposition(
+    graph: ReebGraph, traversal: Traversal, names: Mapping[int, object] | None = None
+) -> Figure:
     """The walk p(G) on the Reeb graph, and beside it its MSP and its largest MSCs.
 
     Arrows point the way of the walk; an edge walked there and back has two. Of more than five
     MSCs the five with the most nodes are drawn apart, and the title counts the others.
+
+    Parameters
+    ----------
+    names : mapping, optional
+        What to call each node; by default its number.
 
     Examples
     --------
@@ -35,6 +48,7 @@ def decomposition(graph: ReebGraph, traversal: Traversal) -> Figure:
     >>> [axes.get_title() for axes in draw.decomposition(graph, lu.traverse(graph)).axes]
     ['p(G), 4 visits of 3 nodes', 'MSP $I_1$, 2 nodes', 'MSC $C_{1}$, 2 nodes at 2']
     """
+    called = {node: str((names or {}).get(node, node)) for node in range(len(graph))}
     place = places(graph, apart=max(1.2, np.ptp(places(graph)[:, 0]) / 9))
     cycles = list(enumerate(traversal.mscs, 1))
     shown = sorted(sorted(cycles, key=lambda row: -len(set(row[1])))[:_MOST])
@@ -49,18 +63,19 @@ def decomposition(graph: ReebGraph, traversal: Traversal) -> Figure:
     panels[0].set_ylabel("layer", color=INK)
     panels[0].yaxis.get_major_locator().set_params(integer=True)
     whole = [(traversal.msp, MSP), *((cycle, colours[number]) for number, cycle in cycles)]
-    _panel(panels[0], graph, place, whole, walked + left)
+    _panel(panels[0], called, graph, place, whole, walked + left)
     title = f"MSP $I_1$, {len(traversal.msp)} nodes"
-    _panel(panels[1], graph, place, [(traversal.msp, MSP)], title)
+    _panel(panels[1], called, graph, place, [(traversal.msp, MSP)], title)
     for axes, (number, cycle) in zip(panels[2:], shown, strict=True):
-        title = f"MSC $C_{{{number}}}$, {len(set(cycle))} nodes at {cycle[0]}"
-        _panel(axes, graph, place, [(cycle, colours[number])], title)
+        title = f"MSC $C_{{{number}}}$, {len(set(cycle))} nodes at {called[cycle[0]]}"
+        _panel(axes, called, graph, place, [(cycle, colours[number])], title)
     figure.tight_layout()
     return figure
 
 
 def _panel(
     axes: Axes,
+    called: Mapping[int, str],
     graph: ReebGraph,
     place: FloatArray,
     ways: Sequence[tuple[Sequence[int], str]],
@@ -80,21 +95,16 @@ def _panel(
                 "",
                 place[b],
                 place[a],
-                arrowprops={
-                    "arrowstyle": "-|>,head_width=0.15,head_length=0.3",
-                    "color": colour,
-                    "lw": 1.4,
-                    "shrinkA": 6,
-                    "shrinkB": 6,
-                    "connectionstyle": f"arc3,rad={bend}",
-                },
+                arrowprops=_ARROW | {"color": colour, "connectionstyle": f"arc3,rad={bend}"},
             )
     edge = [shade[node] for node in range(len(graph))]
     x, y = place.T
-    axes.scatter(x, y, s=150, c="white", edgecolors=edge, linewidths=1.8, zorder=3)
+    axes.scatter(x, y, s=190, c="white", edgecolors=edge, linewidths=1.8, zorder=3)
     for node, (left, up) in enumerate(place.tolist()):
         dark = INK if shade[node] != PALE else GREY
-        axes.text(left, up, str(node), ha="center", va="center", fontsize=6, color=dark, zorder=4)
+        axes.text(
+            left, up, called[node], ha="center", va="center", fontsize=8, color=dark, zorder=4
+        )
     axes.set_title(title, fontsize=10, color=INK)
     axes.set_xticks([])
     axes.tick_params(left=False, colors=GREY)

@@ -11,6 +11,7 @@ from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from ..grid import BoolArray, FloatArray, IntArray
@@ -68,10 +69,19 @@ def reeb_axes(axes: Axes, graph: ReebGraph, traversal: Traversal) -> None:
         shade |= dict.fromkeys(nodes, colour)
     _nodes(axes, graph, place, shade)
     for word, node in (("start", traversal.walk[0]), ("end", traversal.walk[-1])):
+        beside = place[(place[:, 1] == place[node, 1]) & (place[:, 0] > place[node, 0]), 0]
+        crowded = len(beside) and beside.min() - place[node, 0] < 0.25 * np.ptp(place[:, 0])
         axes.annotate(
-            word, place[node], (14, 0), textcoords="offset points", va="center", color=MSP
+            word,
+            place[node],
+            (-14 if crowded else 14, 0),
+            textcoords="offset points",
+            ha="right" if crowded else "left",
+            va="center",
+            color=MSP,
         )
     axes.set_ylabel("layer", color=INK)
+    axes.yaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set_xlabel("one circle a node, the larger the more voxels", color=GREY)
     axes.set_xticks([])
     axes.spines[["top", "right", "bottom"]].set_visible(False)
@@ -104,7 +114,7 @@ def _spread(at: FloatArray, apart: float) -> FloatArray:
 
 def _nodes(axes: Axes, graph: ReebGraph, place: FloatArray, shade: dict[int, str]) -> None:
     n_voxels = np.bincount(graph.node_of[graph.node_of >= 0], minlength=len(graph))
-    area = 130 + 500 * n_voxels / n_voxels.max()
+    area = 130 + 350 * n_voxels / n_voxels.max()
     edge = [shade.get(node, GREY) for node in range(len(graph))]
     axes.scatter(
         place[:, 0], place[:, 1], s=area, c="white", edgecolors=edge, linewidths=2.5, zorder=3

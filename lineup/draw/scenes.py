@@ -42,6 +42,40 @@ def solid(
     return _one([solid_body(solid)], azimuth_deg, elevation_deg)
 
 
+def solids(solids: Sequence[VoxelSolid], captions: Sequence[str]) -> Figure:
+    """Solids side by side, each as large as it fits, with words above (Section 3).
+
+    Parameters
+    ----------
+    captions : sequence of str
+        One for each solid; the first line is its title.
+
+    Raises
+    ------
+    ValueError
+        If there is no solid, or not one caption for each.
+
+    Examples
+    --------
+    >>> import numpy as np, lineup as lu
+    >>> from lineup import draw
+    >>> slab = lu.VoxelSolid(np.ones((4, 3, 2), bool))
+    >>> [axes.get_title() for axes in draw.solids([slab], ["slab"]).axes]
+    ['slab']
+    """
+    if not solids or len(solids) != len(captions):
+        raise ValueError(
+            f"a row needs one caption for each solid, "
+            f"got {len(solids)} solids and {len(captions)} captions"
+        )
+    figure = page(_CELL * len(solids), 1.15 * _CELL)
+    for k, (one, text) in enumerate(zip(solids, captions, strict=True)):
+        body = solid_body(one)
+        view = view_of(body.points, 1 / 1.15).widened(0.78)
+        caption(picture(figure, (k / len(solids), 0, 1 / len(solids), 1), [body], view), text)
+    return figure
+
+
 def chain(
     chain: VoxelPath | Folding | ArrayLike,
     solid: VoxelSolid | None = None,

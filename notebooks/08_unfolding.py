@@ -51,9 +51,12 @@ draw.two_stages(motion)
 # Within a depth nothing crosses.
 
 # %%
+_, n_joints = np.unique(path.voxels[:, [0, 2]], axis=0, return_counts=True)
+assert n_joints.max() > 1  # composite squares, as in Figure 13
 draw.projection(path)
 
 # %%
+assert len(np.unique(path.voxels[:, 1])) == block.occupancy.shape[1] == 3
 draw.depths(path)
 
 # %% [markdown]
@@ -150,3 +153,5 @@ print([round(side) for side in far.extent], [round(side) for side in near.extent
 #   for bars without width, and one tilt does the same.
 # - It is not what unfolds our chains: `lu.fold` designs path and motion together.
 # - 'Certified' is the word of a judge about the motion that is stored, at a stated width and bend.
+#
+# Next: `09_table2` does all this for the ten models of the paper.
