@@ -1,10 +1,11 @@
-"""Every figure: solids and chains, Reeb graphs and layers, unfoldings and contact sheets.
+"""Every figure: solids and chains, Reeb graphs and layers, unfoldings, contact sheets, numbers.
 
 Each function returns a matplotlib figure; `save` writes it.
 """
 
 from .animation import animation
 from .decomposition import decomposition
+from .dots import dots
 from .files import save
 from .linkages import depths, projection, two_stages
 from .moments import unfolding
@@ -13,6 +14,7 @@ from .printed import block, slots
 from .regions import checkerboard, contraction, merge, planar_steps
 from .scenarios import run
 from .scenes import chain, contact_sheet, layering, solid
+from .spread import spread
 from .strength import standing, strength
 
 __all__ = [
@@ -24,6 +26,7 @@ __all__ = [
     "contraction",
     "decomposition",
     "depths",
+    "dots",
     "layering",
     "layers",
     "merge",
@@ -34,6 +37,7 @@ __all__ = [
     "save",
     "slots",
     "solid",
+    "spread",
     "standing",
     "strength",
     "two_stages",

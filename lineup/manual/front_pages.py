@@ -181,16 +181,14 @@ def _lying(sheet: Sheet, assembly: Assembly, top: float) -> None:
     say(sheet, MARGIN, top + 20, textwrap.fill(text, 40), 11)
 
 
-def checklist_pages(document: Document, paper: str, first: int, n_pages: int) -> list[Sheet]:
-    """All steps in a table, to tick."""
-    sheets = []
-    for k, start in enumerate(range(0, len(document.steps), CHECKLIST)):
-        sheet = blank(paper)
-        title(sheet, "Steps", "Tick each when its check is right.")
-        _table(sheet, document.steps[start : start + CHECKLIST])
-        foot(sheet, f"{document.model} · page {first + k} of {n_pages}")
-        sheets.append(sheet)
-    return sheets
+def checklist_page(document: Document, paper: str, page: int, first: int, n_pages: int) -> Sheet:
+    """A page of the table of all steps, to tick; `first` is the first of these pages."""
+    sheet = blank(paper)
+    title(sheet, "Steps", "Tick each when its check is right.")
+    start = (page - first) * CHECKLIST
+    _table(sheet, document.steps[start : start + CHECKLIST])
+    foot(sheet, f"{document.model} · page {page} of {n_pages}")
+    return sheet
 
 
 _COLUMNS = (
