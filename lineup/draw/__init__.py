@@ -10,6 +10,7 @@ from .files import save
 from .linkages import depths, projection, two_stages
 from .moments import unfolding
 from .plans import layers, reeb
+from .plates import plate
 from .printed import block, slots
 from .regions import checkerboard, contraction, merge, planar_steps
 from .scenarios import run
@@ -31,6 +32,7 @@ __all__ = [
     "layers",
     "merge",
     "planar_steps",
+    "plate",
     "projection",
     "reeb",
     "run",
