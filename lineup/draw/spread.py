@@ -11,7 +11,7 @@ from PIL import Image
 
 from .page import GREY, page
 
-_HEIGHT, _GAP = 10.0, 0.12  # inches: of a page, and around it
+_HEIGHT, _GAP = 9.0, 0.12  # inches: of a page, and around it
 _DPI = 100
 
 
