@@ -30,7 +30,8 @@ lab: $(STAMP)  ## JupyterLab on the first notebook
 notebooks: $(STAMP)  ## Execute every notebook again from its .py half
 	$(BIN)/jupytext --quiet --to ipynb --update --set-formats ipynb,py:percent --set-kernel python3 notebooks/*.py
 	env -u LINEUP_MODELS $(BIN)/jupyter nbconvert --log-level WARN --to notebook --inplace --execute \
-	  --ExecutePreprocessor.record_timing=False notebooks/*.ipynb
+	  --ExecutePreprocessor.record_timing=False --ExecutePreprocessor.store_widget_state=False \
+	  notebooks/*.ipynb
 
 benchmarks: $(STAMP)  ## Our paths beside those of other tools, and how their time grows: results/
 	$(BIN)/python benchmarks/paths.py peers

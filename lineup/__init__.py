@@ -54,6 +54,7 @@ _HOME = {
     "check_block": "block",
     "export_print": "fabrication",
     "write_manual": "manual",
+    "manual_pages": "manual",
     "read_manual": "manual",
     "standing_by_step": "manual",
     "export_robot": "robot",

@@ -14,6 +14,7 @@ import lineup as lu
 
 sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))
 
+import boxes
 import folding
 import motion
 import paths
@@ -190,3 +191,15 @@ def test_slots_on_a_tiny_solid(tmp_path):
     assert anew["path"] == free["path"]
     assert anew["share"] == anew["against"] / anew["moves"]
     assert "| slotted growth" in (tmp_path / "slots.md").read_text()
+
+
+def test_boxes_on_a_tiny_one(tmp_path, monkeypatch):
+    monkeypatch.setattr(boxes, "BOXES", ((3, 2, 2),))
+    run("--solid", "duck", "--solid", "nothing", "--out", tmp_path, app=boxes.app)
+    duck, nothing = pd.read_csv(tmp_path / "boxes.csv").to_dict("records")
+    assert (duck["voxels"], duck["blocks"], duck["certified"]) == (12, 6, True)
+    assert duck["solid_voxels"] >= 12
+    assert duck["moves"] > 0
+    assert duck["clearance"] >= 0.999
+    assert not nothing["certified"]
+    assert "nothing" in nothing["reason"]

@@ -8,8 +8,9 @@ import pytest
 import lineup as lu
 from lineup import draw
 from lineup.block import BLOCKS, Block
-from lineup.draw import printed, render
+from lineup.draw import plates, printed, render
 from lineup.draw.view import Triangles, view_of
+from lineup.fabrication import placed
 
 RED = (220, 30, 30)
 CUBE = np.array(list(product((-1.0, 1.0), repeat=3)))
@@ -155,3 +156,23 @@ def test_pictures_of_a_block_have_its_colours_and_are_equal_bytes(tmp_path):
     assert warm.mean() > 0.05
     assert cold.mean() > 0.05
     assert np.nonzero(warm)[1].mean() < np.nonzero(cold)[1].mean() - 50
+
+
+@pytest.mark.usefixtures("plain")
+def test_a_plate_shows_every_piece_above_its_bed(monkeypatch):
+    seen = []
+    monkeypatch.setattr(plates, "picture", lambda figure, place, bodies, view: seen.extend(bodies))
+    path = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)])
+    draw.plate(placed(path, Block()), Block())
+    bed, body = seen
+    away = np.abs(body.points[:, None] - path).max(axis=2)
+    assert away.min(axis=1).max() <= 0.5
+    assert set(away.argmin(axis=1)) == {0, 1, 2, 3}
+    assert body.points[:, 2].min() == pytest.approx(bed.points[:, 2].max() + bed.edge / 2)
+    assert (bed.points.min(axis=0)[:2] <= body.points.min(axis=0)[:2]).all()
+    assert (bed.points.max(axis=0)[:2] >= body.points.max(axis=0)[:2]).all()
+
+
+def test_a_plate_without_a_piece_is_refused():
+    with pytest.raises(ValueError, match="one piece"):
+        draw.plate([], Block())

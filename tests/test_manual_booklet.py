@@ -301,3 +301,18 @@ def test_a_manual_of_754_blocks_is_small_and_comes_back(tmp_path):
         again = lu.read_manual(file)
         assert np.array_equal(again.path.voxels, made.path.voxels)
         assert lu.certify(again.motion).ok
+
+
+def test_pages_by_number_are_those_of_the_booklet(folding, pages):
+    for number, figure in zip(
+        (1, len(pages)), lu.manual_pages(folding, [1, len(pages)], name="cube"), strict=True
+    ):
+        shown = [text.get_text() for text in figure.axes[0].texts]
+        assert f"cube · page {number} of {len(pages)}" in shown
+        assert all(line in pages[number - 1] for text in shown for line in text.splitlines()[:1])
+
+
+@pytest.mark.parametrize("number", [0, 1000])
+def test_a_page_that_is_not_there_is_refused(folding, number):
+    with pytest.raises(ValueError, match=f"got {number}"):
+        lu.manual_pages(folding, [number])

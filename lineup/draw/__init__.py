@@ -1,4 +1,4 @@
-"""Every figure: solids and chains, Reeb graphs and layers, unfoldings and contact sheets.
+"""Every figure: solids and chains, Reeb graphs and layers, unfoldings, contact sheets, numbers.
 
 Each function returns a matplotlib figure; `save` writes it.
 """
@@ -6,17 +6,20 @@ Each function returns a matplotlib figure; `save` writes it.
 from .animation import animation
 from .apart import layer, nodes, storeys
 from .decomposition import decomposition
+from .dots import dots
 from .ends import overlap, shared_links
 from .files import save
 from .interactive import explore
 from .linkages import depths, projection, two_stages
 from .moments import unfolding
 from .plans import layers, reeb
+from .plates import plate
 from .printed import block, slots
 from .regions import checkerboard, contraction, merge, planar_steps
 from .scenarios import run
 from .scenes import chain, contact_sheet, layering, solid, solids
 from .shares import assumptions
+from .spread import spread
 from .strength import standing, strength
 
 __all__ = [
@@ -29,6 +32,7 @@ __all__ = [
     "contraction",
     "decomposition",
     "depths",
+    "dots",
     "explore",
     "layer",
     "layering",
@@ -37,6 +41,7 @@ __all__ = [
     "nodes",
     "overlap",
     "planar_steps",
+    "plate",
     "projection",
     "reeb",
     "run",
@@ -45,6 +50,7 @@ __all__ = [
     "slots",
     "solid",
     "solids",
+    "spread",
     "standing",
     "storeys",
     "strength",

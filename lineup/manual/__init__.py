@@ -2,6 +2,6 @@
 
 from .reading import read_manual
 from .standing import standing_by_step
-from .writing import ManualFiles, write_manual
+from .writing import ManualFiles, manual_pages, write_manual
 
-__all__ = ["ManualFiles", "read_manual", "standing_by_step", "write_manual"]
+__all__ = ["ManualFiles", "manual_pages", "read_manual", "standing_by_step", "write_manual"]

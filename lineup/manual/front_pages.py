@@ -77,9 +77,11 @@ def _difficulty(sheet: Sheet, document: Document, top: float) -> None:
     for k in range(5):
         x = MARGIN + 33 + 7 * k
         full = k < grade["grade"]
-        line(sheet, [(x, top + 2.2), (x, top + 2.2)], 5, INK)
+        # A line without length is no dot where pixels are drawn.
+        dot = [(x, top + 2.2), (x + 0.01, top + 2.2)]
+        line(sheet, dot, 5, INK)
         if not full:
-            line(sheet, [(x, top + 2.2), (x, top + 2.2)], 4, "white", zorder=3)
+            line(sheet, dot, 4, "white", zorder=3)
     word = WORDS[grade["grade"] - 1]
     say(sheet, MARGIN + 30 + 40, top, f"{word}: {grade['points']} points", 11)
     how = (
@@ -131,8 +133,8 @@ def card_page(
     layer = int(assembly.places[list(assembly.base), 2].min())
     ground(sheet, plan, assembly.places[:0], layer)
     base_bar(sheet, plan, assembly, layer)
-    x, y = plan.at(assembly.places[assembly.base[0]]).tolist()
-    say(sheet, x, y, "base", 0.22 * cell * POINT, ha="center", va="center", zorder=5)
+    x, y = plan.at(assembly.places[list(assembly.base)]).mean(axis=0).tolist()
+    say(sheet, x, y - 0.55 * cell, "base", 0.3 * cell * POINT, ha="center", va="center", zorder=5)
     compass(sheet, plan.left + columns * cell + 5, plan.top + 5)
     y = plan.top + rows * cell + 10
     size = "to size" if cell == pitch_mm else f"at {cell / pitch_mm:.0%} of its size"
@@ -162,11 +164,18 @@ def _base_text(sheet: Sheet, assembly: Assembly, top: float) -> None:
         "1.  Lay the chain out straight. Mark its head, its tail, and every tenth hinge.",
         f"2.  Find the base: {kind}.",
         f"3.  Put it on the card as drawn: on column {column}, row {row}"
-        + (", upright." if upright else f", and on column {column2}, row {row2}.")
-        + ("" if raised == 1 else f" It is in layer {raised}: put {raised - 1} voxels under it."),
-        *(f"     {text}" for text in ends),
+        + (", upright." if upright else f", and on column {column2}, row {row2}."),
+        *(f"     {text}" for text in [*_raised(raised), *ends]),
     ]
     say(sheet, MARGIN, top, "\n".join(texts), 10.5, linespacing=1.6)
+
+
+def _raised(layer: int) -> list[str]:
+    """What to do about a base that is not on the table."""
+    if layer == 1:
+        return []
+    many = f"{layer - 1} voxel" + ("s" if layer > 2 else "")
+    return [f"It is in layer {layer}: put something as high as {many} under it."]
 
 
 def _lying(sheet: Sheet, assembly: Assembly, top: float) -> None:
@@ -181,16 +190,14 @@ def _lying(sheet: Sheet, assembly: Assembly, top: float) -> None:
     say(sheet, MARGIN, top + 20, textwrap.fill(text, 40), 11)
 
 
-def checklist_pages(document: Document, paper: str, first: int, n_pages: int) -> list[Sheet]:
-    """All steps in a table, to tick."""
-    sheets = []
-    for k, start in enumerate(range(0, len(document.steps), CHECKLIST)):
-        sheet = blank(paper)
-        title(sheet, "Steps", "Tick each when its check is right.")
-        _table(sheet, document.steps[start : start + CHECKLIST])
-        foot(sheet, f"{document.model} · page {first + k} of {n_pages}")
-        sheets.append(sheet)
-    return sheets
+def checklist_page(document: Document, paper: str, page: int, first: int, n_pages: int) -> Sheet:
+    """A page of the table of all steps, to tick; `first` is the first of these pages."""
+    sheet = blank(paper)
+    title(sheet, "Steps", "Tick each when its check is right.")
+    start = (page - first) * CHECKLIST
+    _table(sheet, document.steps[start : start + CHECKLIST])
+    foot(sheet, f"{document.model} · page {page} of {n_pages}")
+    return sheet
 
 
 _COLUMNS = (

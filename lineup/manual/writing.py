@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..judging import certify
 from ..solid import Folding
 from ..storage import write_whole
-from .assembly import assembly_of
-from .documents import csv_text, document_of, json_text
+from .assembly import Assembly, assembly_of
+from .documents import Document, csv_text, document_of, json_text
 from .sheets import check_sheet
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 class ManualFiles(NamedTuple):
@@ -72,12 +76,7 @@ def write_manual(
     """
     from .booklet import write_booklet
 
-    check_sheet(paper, pitch_mm)
-    if not name or name != Path(name).name:
-        raise ValueError(f"name must be that of a file without folders, got {name!r}")
-    assembly = assembly_of(folding)
-    motion = assembly.folding.motion
-    document = document_of(assembly, certify(motion, motion.diameter, motion.max_bend_deg), name)
+    assembly, document = _laid_out(folding, name, paper, pitch_mm)
     place = Path(folder)
     place.mkdir(parents=True, exist_ok=True)
     files = ManualFiles(*(place / f"{name}.manual.{kind}" for kind in ("json", "csv", "pdf")))
@@ -85,3 +84,52 @@ def write_manual(
     write_whole(files.csv, csv_text(document.rows))
     write_booklet(assembly, document, files.pdf, paper, pitch_mm)
     return files
+
+
+def manual_pages(
+    folding: Folding,
+    pages: Sequence[int] = (1,),
+    *,
+    name: str = "model",
+    paper: str = "a4",
+    pitch_mm: float = 10.0,
+) -> list[Figure]:
+    """Some pages of the booklet that `write_manual` writes, as figures.
+
+    Parameters
+    ----------
+    pages : sequence of int
+        Their numbers, from 1: the cover, how to read the others, the base card, a checklist, then
+        a page for each step, and the finished model.
+    folding, name, paper, pitch_mm
+        As for `write_manual`.
+
+    Raises
+    ------
+    ValueError
+        As `write_manual`, or if the booklet has no page of such a number.
+
+    Examples
+    --------
+    >>> import numpy as np, lineup as lu
+    >>> folding = lu.fold(lu.VoxelSolid(np.ones((2, 2, 1), bool)), rounds=20, trial_rounds=5)
+    >>> (cover,) = lu.manual_pages(folding, [1], name="square")
+    >>> cover.get_size_inches().round(1).tolist()
+    [8.3, 11.7]
+    """
+    from .booklet import pages_of
+
+    return pages_of(*_laid_out(folding, name, paper, pitch_mm), pages, paper, pitch_mm)
+
+
+def _laid_out(
+    folding: Folding, name: str, paper: str, pitch_mm: float
+) -> tuple[Assembly, Document]:
+    check_sheet(paper, pitch_mm)
+    if not name or name != Path(name).name:
+        raise ValueError(f"name must be that of a file without folders, got {name!r}")
+    assembly = assembly_of(folding)
+    motion = assembly.folding.motion
+    return assembly, document_of(
+        assembly, certify(motion, motion.diameter, motion.max_bend_deg), name
+    )
