@@ -8,11 +8,13 @@ from .decomposition import decomposition
 from .files import save
 from .linkages import depths, projection, two_stages
 from .moments import unfolding
+from .orientations import orientations
 from .plans import layers, reeb
 from .printed import block, slots
 from .regions import checkerboard, contraction, merge, planar_steps
 from .scenarios import run
 from .scenes import chain, contact_sheet, layering, solid
+from .silhouettes import silhouettes
 from .strength import standing, strength
 
 __all__ = [
@@ -27,11 +29,13 @@ __all__ = [
     "layering",
     "layers",
     "merge",
+    "orientations",
     "planar_steps",
     "projection",
     "reeb",
     "run",
     "save",
+    "silhouettes",
     "slots",
     "solid",
     "standing",
