@@ -37,8 +37,8 @@ benchmarks: $(STAMP)  ## Our paths beside those of other tools, and how their ti
 	$(BIN)/python benchmarks/paths.py peers
 	$(BIN)/python benchmarks/paths.py growth
 
-site: $(STAMP)  ## The documentation: site/docs/index.html
-	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going -c docs . site
+site: $(STAMP)  ## The documentation: site/html/docs/index.html
+	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going -c docs . site/html
 
 setup: $(STAMP)  ## The virtual environment alone
 
