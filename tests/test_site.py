@@ -23,6 +23,7 @@ def test_every_public_name_is_on_the_page_of_names():
 def test_the_site_builds_offline_without_a_warning(tmp_path):
     pytest.importorskip("myst_nb")
     command = [sys.executable, "-m", "sphinx", "--fail-on-warning", "-c", "docs", "."]
+    command.append(str(tmp_path / "html"))
     unreachable = os.environ | {"https_proxy": "http://127.0.0.1:9", "no_proxy": ""}
     subprocess.run(
         [*command, tmp_path / "html"], cwd=ROOT, env=unreachable, check=True, capture_output=True
