@@ -137,7 +137,7 @@ def two_stages(motion: Motion | Folding, moments: int = 3) -> Figure:
     when = np.linspace(0, substeps * n_bends, moments + 1).astype(int)[1:].tolist()
     for panel, k in zip(panels[2:], when, strict=False):
         _linkage(panel, poses[k], axis, squares=False)
-        _told(panel, "c", f"after {k / substeps:.2g} of {n_bends} bends")
+        _told(panel, "c", f"along {_NAMES[axis]}, {k / (substeps * n_bends):.0%} of the flow")
     other = 0 if axis != 0 else 1
     _linkage(panels[-1], poses[substeps * n_bends], other, squares=False)
     ending = "one tilt to go" if motion.straight else motion.reason.split(" after")[0]

@@ -85,7 +85,7 @@ def reeb_axes(axes: Axes, graph: ReebGraph, traversal: Traversal) -> None:
     axes.set_xlabel("one circle a node, the larger the more voxels", color=GREY)
     axes.set_xticks([])
     axes.spines[["top", "right", "bottom"]].set_visible(False)
-    axes.margins(0.08)
+    axes.margins(0.16, 0.08)
 
 
 def places(graph: ReebGraph, apart: float = 1.2) -> FloatArray:
