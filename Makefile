@@ -5,7 +5,8 @@ PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
-EXTRAS := notebooks,exact,test
+SWEEPS := orientations resolutions paths trimming motions bonding
+EXTRAS := notebooks,exact,cluster,test
 WANTED := --constraint constraints.txt --editable ".[$(EXTRAS)]"
 
 # Without a display the window must come from EGL, or VTK crashes at the first picture.
@@ -36,10 +37,15 @@ benchmarks: $(STAMP)  ## Our paths beside those of other tools, and how their ti
 	$(BIN)/python benchmarks/paths.py peers
 	$(BIN)/python benchmarks/paths.py growth
 
+# Without meshes from outside, so that everyone has the same solids.
+experiments: $(STAMP)  ## Every sweep again, and its committed tables: experiments/results/sweeps/
+	set -e; for name in $(SWEEPS); do env -u LINEUP_MODELS LINEUP_CACHE=results/none \
+	  $(BIN)/lineup sweep experiments/$$name.yaml --out experiments/results/sweeps; done
+
 setup: $(STAMP)  ## The virtual environment alone
 
 clean:  ## Remove results and caches; the virtual environment stays
-	rm -rf results out .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf results out experiments/results/sweeps/*/ .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find lineup tests -name __pycache__ -prune -exec rm -rf {} +
 
 help:  ## This list
@@ -58,4 +64,4 @@ $(STAMP): pyproject.toml constraints.txt
 	@$(BIN)/python -c 'import lineup as lu; lu.lineup(["duck"], blocks=40)'
 	@touch $@
 
-.PHONY: reproduce test lint lab notebooks benchmarks setup clean help
+.PHONY: reproduce test lint lab notebooks benchmarks experiments setup clean help

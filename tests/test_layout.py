@@ -33,8 +33,8 @@ ORDER = [
     *("visits", "reeb", "planar", "linking", "assumptions", "paper", "spatial", "refinement"),
     *("layered", "bounds", "subset_sums", "contraction"),
     *("motion", "folding", "trimming", "transformation", "scenarios"),
-    *("stress", "storage", "robot", "verification", "pipeline", "_sources", "engines", "sweep"),
-    *("tables",),
+    *("stress", "storage", "robot", "verification", "pipeline", "tasks"),
+    *("_sources", "engines", "cluster", "experiment", "sweep", "styled", "tables"),
     *("block", "draw", "viewer", "fabrication", "manual"),
     *("_progress", "cli"),
 ]

@@ -1,10 +1,11 @@
-"""Every figure: solids and chains, Reeb graphs and layers, unfoldings and contact sheets.
+"""Every figure: solids and chains, Reeb graphs and layers, unfoldings, rows of experiments.
 
 Each function returns a matplotlib figure; `save` writes it.
 """
 
 from .animation import animation
 from .decomposition import decomposition
+from .experiments import experiment
 from .files import save
 from .linkages import depths, projection, two_stages
 from .moments import unfolding
@@ -24,6 +25,7 @@ __all__ = [
     "contraction",
     "decomposition",
     "depths",
+    "experiment",
     "layering",
     "layers",
     "merge",
