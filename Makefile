@@ -5,7 +5,8 @@ PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
-EXTRAS := notebooks,exact,site,test
+SWEEPS := orientations resolutions paths trimming motions bonding
+EXTRAS := notebooks,exact,cluster,site,test
 WANTED := --constraint constraints.txt --editable ".[$(EXTRAS)]"
 
 # Without a display the window must come from EGL, or VTK crashes at the first picture.
@@ -40,10 +41,15 @@ benchmarks: $(STAMP)  ## Our paths beside those of other tools, and how their ti
 site: $(STAMP)  ## The documentation: site/html/docs/index.html
 	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going -c docs . site/html
 
+# Without meshes from outside, so that everyone has the same solids.
+experiments: $(STAMP)  ## Every sweep again, and its committed tables: experiments/results/sweeps/
+	set -e; for name in $(SWEEPS); do env -u LINEUP_MODELS LINEUP_CACHE=results/none \
+	  $(BIN)/lineup sweep experiments/$$name.yaml --out experiments/results/sweeps; done
+
 setup: $(STAMP)  ## The virtual environment alone
 
 clean:  ## Remove results and caches; the virtual environment stays
-	rm -rf results out site .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf results out site experiments/results/sweeps/*/ .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find lineup tests -name __pycache__ -prune -exec rm -rf {} +
 
 help:  ## This list
@@ -62,4 +68,4 @@ $(STAMP): pyproject.toml constraints.txt
 	@$(BIN)/python -c 'import lineup as lu; lu.lineup(["duck"], blocks=40)'
 	@touch $@
 
-.PHONY: reproduce test lint lab notebooks benchmarks site setup clean help
+.PHONY: reproduce test lint lab notebooks benchmarks experiments site setup clean help

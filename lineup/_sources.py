@@ -1,8 +1,9 @@
 """Which source files a function depends on, so that a stored result can tell when it is stale."""
 
 import ast
+import hashlib
 import importlib.util
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 PACKAGE = __package__ or "lineup"
@@ -25,6 +26,19 @@ def source_files(module: str) -> list[Path]:
             files[name] = file
             waiting += _imported(name, file)
     return sorted(set(files.values()))
+
+
+def source_digest(module: str) -> str:
+    """Hash of what `source_files` lists."""
+    return digest(file.read_bytes() for file in source_files(module))
+
+
+def digest(parts: Iterable[bytes]) -> str:
+    """Hash of a row of byte strings."""
+    whole = hashlib.sha256()
+    for part in parts:
+        whole.update(hashlib.sha256(part).digest())
+    return whole.hexdigest()[:16]
 
 
 def _file(name: str) -> Path | None:

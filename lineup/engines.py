@@ -37,7 +37,7 @@ def serial(
 ) -> Iterator[tuple[int, Outcome]]:
     """Run the jobs one after another in this process."""
     for k, job in enumerate(jobs):
-        yield k, _outcome(function, job, partial(report, k))
+        yield k, outcome_of(function, job, partial(report, k))
 
 
 def processes(
@@ -70,7 +70,8 @@ def processes(
 ENGINES = {"serial": serial, "processes": processes}
 
 
-def _outcome(function: Function, job: Row, progress: Callable[[str], None]) -> Outcome:
+def outcome_of(function: Function, job: Row, progress: Callable[[str], None]) -> Outcome:
+    """Run one job here; whatever it raises is the reason of its outcome."""
     begin = time.perf_counter()
     try:
         row = function(**job, progress=progress)
@@ -133,4 +134,4 @@ def _serve(connection: Connection, function: Function) -> None:
             job = connection.recv()
         except EOFError:
             return
-        connection.send(_outcome(function, job, connection.send))
+        connection.send(outcome_of(function, job, connection.send))

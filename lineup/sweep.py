@@ -1,132 +1,31 @@
-"""Run an experiment file: one task for each combination of its settings, one row for each task.
+"""Run an experiment: one row for each task, and what was finished is never run again.
 
-What stands in an experiment file and in a results folder is told in experiments/FORMAT.md.
+What stands in a results folder is told in experiments/FORMAT.md.
 """
 
 from __future__ import annotations
 
-import hashlib
-import itertools
 import json
 import os
-import re
-from collections.abc import Callable
-from dataclasses import asdict, dataclass
-from importlib import import_module
-from inspect import signature
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict
+from functools import lru_cache, partial
 from pathlib import Path
-from typing import Annotated, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import pandas as pd
-import yaml
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
-from . import catalog
-from ._sources import source_files
-from .engines import ENGINES, Function, Outcome
-from .storage import first_error, plain, write_whole
+from . import engines
+from ._sources import source_digest
+from .cluster import dask
+from .engines import Outcome, Report, Row
+from .experiment import TASKS, Experiment, Scalar, Task, function_of, key_of, tasks
+from .storage import plain, write_whole
 
-TASKS = {"table2": "lineup.pipeline:table2_task"}
-"""What a sweep can run: plain functions of keyword settings that return a row.
+ENGINES = (*engines.ENGINES, "dask")
+"""The ways to run the tasks: in this process, in several, or on a Dask cluster."""
 
-Besides its settings a task is given `folder`, a Path to save what it makes in, and `progress`, to
-be called with the name of each stage it begins.
-"""
-
-
-def _scalar(value: object) -> object:
-    if value is not None and not isinstance(value, (bool, int, float, str)):
-        raise ValueError("must be a number, a text, true, false or null")
-    return value
-
-
-def _listed(value: object) -> object:
-    return value if isinstance(value, list) else [value]
-
-
-Scalar: TypeAlias = bool | int | float | str | None
-Setting = Annotated[Any, AfterValidator(_scalar)]
-Axis = Annotated[list[Setting], BeforeValidator(_listed), Field(min_length=1)]
-Grids = Annotated[list[dict[str, Axis]], Field(min_length=1)]
-Progress: TypeAlias = Callable[["Task", str], None]
-
-
-class Experiment(BaseModel):
-    """An experiment file, see experiments/FORMAT.md."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, hide_input_in_errors=True)
-
-    title: str
-    task: str
-    fixed: dict[str, Setting] = {}
-    grids: Grids
-    variants: dict[str, Grids] = {}
-
-
-@dataclass(frozen=True)
-class Task:
-    """One combination of settings, and where its result goes."""
-
-    number: int
-    label: str
-    settings: dict[str, Scalar]
-    key: str
-    folder: Path
-
-    @property
-    def file(self) -> Path:
-        """The result file of this task."""
-        return self.folder / "row.json"
-
-
-def read_experiment(file: str | os.PathLike[str]) -> Experiment:
-    """Read and check an experiment file.
-
-    Raises
-    ------
-    FileNotFoundError, ValueError
-        If there is no such file, or it is not an experiment; one line that says where.
-    """
-    path = Path(file)
-    if not path.is_file():
-        raise FileNotFoundError(f"no experiment file {path}")
-    try:
-        return Experiment.model_validate(yaml.safe_load(path.read_text(encoding="utf-8")))
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        where = f" in line {mark.line + 1}" if mark is not None else ""
-        raise ValueError(f"{path}: not YAML{where}: {getattr(error, 'problem', '')}") from None
-    except ValidationError as error:
-        raise ValueError(f"{path}: {first_error(error)}") from None
-
-
-def tasks(experiment: Experiment, folder: Path, variant: str | None = None) -> list[Task]:
-    """Every combination of the settings, in the order of the file, the last list fastest.
-
-    Raises
-    ------
-    ValueError
-        If the task, the variant or a setting is unknown, or a combination stands twice.
-    """
-    function = _function(experiment.task)
-    if variant is not None and variant not in experiment.variants:
-        known = ", ".join(experiment.variants) or "none"
-        raise ValueError(f"unknown variant {variant!r}; this experiment has: {known}")
-    grids = experiment.grids if variant is None else experiment.variants[variant]
-    code = _digest(file.read_bytes() for file in source_files(function.__module__))
-    found: dict[str, Task] = {}
-    for axes in grids:
-        for values in itertools.product(*axes.values()):
-            settings = experiment.fixed | dict(zip(axes, values, strict=True))
-            _check_settings(function, experiment.task, settings)
-            label = _label(values)
-            if label in found:
-                raise ValueError(f"two tasks would both be called {label!r}")
-            key = _digest(
-                [json.dumps(settings, sort_keys=True).encode(), code.encode(), *_inputs(settings)]
-            )
-            found[label] = Task(len(found), label, settings, key, folder / label)
-    return list(found.values())
+Progress: TypeAlias = Callable[[Task, str], None]
 
 
 def run_sweep(
@@ -136,6 +35,7 @@ def run_sweep(
     variant: str | None = None,
     engine: str = "serial",
     workers: int = 1,
+    scheduler: str | None = None,
     progress: Progress | None = None,
 ) -> pd.DataFrame:
     """Run the tasks of an experiment that have no result yet; return one row for each task.
@@ -151,7 +51,10 @@ def run_sweep(
     engine : str
         One of `ENGINES`; the result does not depend on it.
     workers : int
-        Processes to use, where the engine uses any.
+        Processes that the engine "processes" uses.
+    scheduler : str
+        Address of the Dask scheduler, for the engine "dask" alone. Its workers need this very
+        version of the package, and where a setting names a mesh file, that file at that path.
     progress : callable
         Called with a task and what happens to it: a stage, "done", "kept" or "failed: why".
 
@@ -163,12 +66,12 @@ def run_sweep(
     Raises
     ------
     ValueError
-        If the experiment does not fit its task, or `engine` or `workers` is no possible value.
+        If the experiment does not fit its task, or `engine`, `workers` or `scheduler` is no
+        possible value, or Dask is not installed.
+    ConnectionError
+        If the scheduler does not answer, has no workers or is lost.
     """
-    if engine not in ENGINES:
-        raise ValueError(f"unknown engine {engine!r}; known: {', '.join(ENGINES)}")
-    if workers < 1:
-        raise ValueError(f"workers must be at least 1, got {workers}")
+    _check_engine(engine, workers, scheduler)
     tell = progress or (lambda task, text: None)
     todo: list[Task] = []
     results: dict[int, dict[str, Any]] = {}
@@ -184,58 +87,73 @@ def run_sweep(
     def report(k: int, stage: str) -> None:
         tell(todo[k], stage)
 
-    jobs = [{**task.settings, "folder": task.folder} for task in todo]
-    for k, outcome in ENGINES[engine](_function(experiment.task), jobs, workers, report):
+    for k, outcome in _outcomes(TASKS[experiment.task], todo, engine, workers, scheduler, report):
         results[todo[k].number] = _store(todo[k], outcome)
         tell(todo[k], f"failed: {outcome.reason}" if outcome.reason else "done")
     return _table([results[number] for number in sorted(results)])
 
 
-def _function(name: str) -> Function:
-    if name not in TASKS:
-        raise ValueError(f"unknown task {name!r}; known: {', '.join(TASKS)}")
-    module, _, function = TASKS[name].partition(":")
-    found: Function = getattr(import_module(module), function)
-    return found
+def seconds(done: Sequence[Task]) -> pd.DataFrame:
+    """How long each task took, failed or not: its settings, then ``seconds``."""
+    results = [json.loads(task.file.read_text(encoding="utf-8")) for task in done]
+    return pd.DataFrame([{**r["settings"], "seconds": round(r["seconds"], 3)} for r in results])
 
 
-def _check_settings(function: Function, task: str, settings: dict[str, Scalar]) -> None:
-    asked = signature(function).parameters
-    known = [name for name in asked if name not in ("folder", "progress")]
-    for name in settings:
-        if name not in known:
-            raise ValueError(f"unknown setting {name!r}; task {task!r} has: {', '.join(known)}")
-    for name in known:
-        if name not in settings and asked[name].default is asked[name].empty:
-            raise ValueError(f"task {task!r} needs the setting {name!r}")
+def elsewhere(
+    place: str,
+    settings: dict[str, Scalar],
+    key: str,
+    *,
+    folder: Path,
+    progress: Callable[[str], None],
+) -> Row:
+    """Run a task on another machine, if it is the same task there as here.
+
+    Raises
+    ------
+    ValueError
+        If the source code, the mesh files or LINEUP_MODELS differ, so that it would be another.
+    """
+    function = function_of(place)
+    if key_of(settings, _code(function.__module__)) != key:
+        raise ValueError(
+            "the worker would run something else: its source code, mesh files or LINEUP_MODELS "
+            "are not those of this machine"
+        )
+    return function(**settings, folder=folder, progress=progress)
 
 
-def _label(values: tuple[Scalar, ...]) -> str:
-    words = [Path(v).stem if isinstance(v, str) else str(v) for v in values]
-    return re.sub(r"[^A-Za-z0-9._-]+", "_", "-".join(words)) or "only"
+_code = lru_cache(source_digest)  # once for each module in the life of a worker
 
 
-def _inputs(settings: dict[str, Scalar]) -> list[bytes]:
-    """What settings name: the contents of files, and where a model of the catalogue comes from."""
-    models = catalog.models()
-    sources = dict(zip(models["name"], models["source"], strict=True))
-    meshes = os.environ.get(catalog.FOLDER_VARIABLE)
-    found: list[bytes] = []
-    for value in settings.values():
-        if isinstance(value, str) and Path(value).is_file():
-            found.append(Path(value).read_bytes())
-        elif value in sources:
-            found.append(sources[value].encode())
-            if meshes and sources[value] == "folder":
-                found.append((Path(meshes) / f"{value}.ply").read_bytes())
-    return found
+def _check_engine(engine: str, workers: int, scheduler: str | None) -> None:
+    if engine not in ENGINES:
+        raise ValueError(f"unknown engine {engine!r}; known: {', '.join(ENGINES)}")
+    if workers < 1:
+        raise ValueError(f"workers must be at least 1, got {workers}")
+    if (engine == "dask") != (scheduler is not None):
+        raise ValueError(
+            f"a scheduler is for the engine 'dask', got it for {engine!r}"
+            if scheduler is not None
+            else "the engine 'dask' needs the address of a scheduler, like tcp://127.0.0.1:8786"
+        )
 
 
-def _digest(parts: Any) -> str:
-    whole = hashlib.sha256()
-    for part in parts:
-        whole.update(hashlib.sha256(part).digest())
-    return whole.hexdigest()[:16]
+def _outcomes(
+    place: str,
+    todo: list[Task],
+    engine: str,
+    workers: int,
+    scheduler: str | None,
+    report: Report,
+) -> Iterator[tuple[int, Outcome]]:
+    """The number and the outcome of each task, as they end."""
+    if scheduler is None:
+        jobs: list[Row] = [{**task.settings, "folder": task.folder} for task in todo]
+        return engines.ENGINES[engine](function_of(place), jobs, workers, report)
+    function = partial(elsewhere, place)
+    jobs = [{"settings": t.settings, "key": t.key, "folder": t.folder} for t in todo]
+    return dask(function, jobs, report, scheduler)
 
 
 def _stored(task: Task) -> dict[str, Any] | None:

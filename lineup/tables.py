@@ -11,6 +11,9 @@ import pandas as pd
 from rich.table import Table
 
 from .storage import write_whole
+from .styled import html
+
+TITLE = "Table 2 of the paper, and ours"
 
 
 @dataclass(frozen=True)
@@ -151,14 +154,15 @@ def _shortfall(row: dict[Any, Any]) -> str:
 
 
 def write_table(table: pd.DataFrame, folder: Path, name: str = "table2") -> list[Path]:
-    """Write NAME.csv (every number, one row a model), NAME.md and NAME.tex (with a totals line)."""
+    """Write NAME.csv (every number, one row a model), NAME.md, .tex and .html (with totals)."""
     printed = _printed(table)
     printed.columns = pd.Index([heading for heading, _ in COLUMNS.values()])
     latex = printed.to_latex(index=False, escape=True)
     markdown = printed.apply(lambda column: column.str.replace("|", "\\|")).to_markdown(
         index=False, disable_numparse=True
     )
-    texts = {"csv": table.to_csv(index=False), "md": f"{markdown}\n", "tex": latex}
+    page = html(printed, TITLE, [], n_left=2)
+    texts = {"csv": table.to_csv(index=False), "md": f"{markdown}\n", "tex": latex, "html": page}
     return [write_whole(folder / f"{name}.{kind}", text) for kind, text in texts.items()]
 
 

@@ -18,6 +18,7 @@ from rich.console import Console
 import lineup as lu
 from lineup import cli, draw, sweep
 from lineup._progress import Reporter
+from lineup.experiment import read_experiment
 from lineup.kinematics import Move
 
 CORNER = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 2, 0]], np.int32)
@@ -105,7 +106,7 @@ def test_table2_quick_runs_the_experiment_file(lineup, fake, tmp_path):
 
 
 def test_the_experiment_has_the_two_sets_of_the_paper(tmp_path, fake):
-    experiment = sweep.read_experiment(cli.EXPERIMENTS / "table2.yaml")
+    experiment = read_experiment(cli.EXPERIMENTS / "table2.yaml")
     found = sweep.tasks(experiment, tmp_path)
     from lineup.tables import PAPER
 
@@ -114,16 +115,23 @@ def test_the_experiment_has_the_two_sets_of_the_paper(tmp_path, fake):
     ]
 
 
-def test_a_sweep_of_another_task_is_a_plain_table(lineup, tmp_path, monkeypatch):
+def test_a_sweep_of_another_task_writes_its_table_and_plot(lineup, tmp_path, monkeypatch):
     monkeypatch.setitem(sweep.TASKS, "fake", "fake_tasks:work")
     monkeypatch.setenv("LINEUP_TEST_CALLS", str(tmp_path / "calls"))
     (tmp_path / "e.yaml").write_text(
-        "{title: t, task: fake, grids: [{model: [a, b], blocks: [1, 2]}]}"
+        "{title: t, task: fake, grids: [{model: [a, b], blocks: [1, 2]}],"
+        " table: {index: model, columns: blocks, values: length}, plot: {x: blocks, y: length}}"
     )
     code, out, _ = lineup("sweep", "e.yaml", "--engine", "serial")
     assert code == 0
     assert "written: results/e.csv" in out
     assert pd.read_csv("results/e.csv").length.tolist() == [2, 4, 2, 4]
+    assert "| a       |   2 |   4 |" in (tmp_path / "results" / "e.md").read_text()
+    assert all((tmp_path / f"results/e.{kind}").is_file() for kind in ("tex", "html", "png"))
+    assert (pd.read_csv("results/e-seconds.csv").seconds >= 0).all()
+    before = (tmp_path / "results" / "e.csv").read_bytes()
+    assert lineup("sweep", "e.yaml", "--engine", "serial")[0] == 0
+    assert (tmp_path / "results" / "e.csv").read_bytes() == before
 
 
 def test_chains_of_a_file_and_of_one_model_twice_are_each_drawn(lineup, tmp_path, monkeypatch):
@@ -367,14 +375,22 @@ def test_the_installed_command_ends_without_a_traceback(tmp_path):
 @pytest.mark.parametrize("terminal", [False, True])
 def test_progress_lines(terminal):
     console = Console(file=io.StringIO(), force_terminal=terminal, width=100)
-    with Reporter(7, console) as tell:
+    now = [0.0]
+    with Reporter(8, console, clock=lambda: now[0]) as tell:
+        tell("h", "kept")
         for name in "abcdefg":
             tell(name, "fold")
+        now[0] = 10.0
         tell("a", "done")
+        assert tell.left() == "about 60 s left"
+        now[0] = 40.0
+        assert tell.left() == "about 30 s left"
         tell("b", "failed: [red] mesh")
+        assert tell.left() == "about 2 min left"
     said = console.file.getvalue()
-    assert "[1/7] a: done\n" in said
-    assert "[2/7] b: failed: [red] mesh\n" in said
-    assert ("[0/7] e: fold\n" in said) != terminal
+    left = [" (about 60 s left)", " (about 2 min left)"] if not terminal else ["", ""]
+    assert f"[2/8] a: done{left[0]}\n" in said
+    assert f"[3/8] b: failed: [red] mesh{left[1]}\n" in said
+    assert ("[1/8] e: fold\n" in said) != terminal
     assert ("c: fold, d: fold, e: fold" in said) == terminal
     assert ("and 2 more" in said) == terminal

@@ -34,9 +34,9 @@ ORDER = [
     *("visits", "reeb", "planar", "linking", "assumptions", "paper", "spatial", "refinement"),
     *("layered", "bounds", "subset_sums", "contraction"),
     *("motion", "folding", "trimming", "symbols", "transformation", "scenarios"),
-    *("stress", "storage", "robot", "verification", "pipeline", "_sources", "engines", "sweep"),
+    *("stress", "storage", "robot", "verification", "pipeline", "tasks"),
     *("headings", "orientation"),
-    *("tables",),
+    *("_sources", "engines", "cluster", "experiment", "sweep", "styled", "tables"),
     *("block", "draw", "viewer", "fabrication", "manual"),
     *("_progress", "cli"),
 ]

@@ -10,11 +10,15 @@ from pathlib import Path
 import fake_tasks
 import pytest
 
+from lineup import experiment as experiments
 from lineup import sweep
 from lineup._sources import source_files
-from lineup.sweep import Experiment, read_experiment, run_sweep, tasks
+from lineup.engines import ENGINES
+from lineup.experiment import Experiment, read_experiment, tasks
+from lineup.sweep import run_sweep
 
 ROOT = Path(__file__).parents[1]
+PLACES = os.pathsep.join([str(ROOT), str(ROOT / "tests")])
 
 
 @pytest.fixture
@@ -38,11 +42,11 @@ def test_tasks_stand_in_file_order_the_last_list_fastest(calls, tmp_path):
     assert found[0].settings == {"seed": 5, "model": "b", "blocks": 2}
 
 
-@pytest.mark.parametrize("engine", sweep.ENGINES)
+@pytest.mark.parametrize("engine", ENGINES)
 def test_failures_are_rows_and_the_others_go_on(calls, tmp_path, engine):
     models = ["a", "refused", "slow", "broken", "b"]
     if engine == "processes":
-        models[2:2] = ["crash", "gone"]
+        models[2:2] = ["crash", "gone", "abort"]
     table = run_sweep(experiment(*models), tmp_path / "out", engine=engine, workers=2)
     assert list(table.model) == models
     failure = dict(zip(table.model, table.failure, strict=True))
@@ -51,6 +55,7 @@ def test_failures_are_rows_and_the_others_go_on(calls, tmp_path, engine):
     if engine == "processes":
         assert failure["crash"] == "the process died (SIGSEGV)"
         assert failure["gone"] == "the process died (exit code 3)"
+        assert failure["abort"] == "the process died (SIGABRT)"
     fine = table[table.failure == ""]
     assert list(fine.model) == ["a", "slow", "b"]
     assert set(fine.length) == {6}
@@ -97,7 +102,7 @@ def test_other_settings_input_or_source_are_other_tasks(calls, tmp_path, monkeyp
     keys.append(key("duck"))
     mesh.write_text("v 0 0 2")
     keys.append(key("duck"))
-    monkeypatch.setattr(sweep, "source_files", lambda module: [mesh])
+    monkeypatch.setattr(experiments, "source_digest", lambda module: "edited")
     keys.append(key("duck"))
     assert len(set(keys)) == len(keys)
     assert key("duck") == keys[-1]
@@ -115,6 +120,43 @@ def test_an_interrupted_run_resumes(calls, tmp_path):
     table = run_sweep(experiment("a", "b"), tmp_path)
     assert list(table.failure) == ["", ""]
     assert calls() == ["a-3", "interrupt-3", "b-3"]
+
+
+SWEEP = """
+import sys
+
+if __name__ == "__main__":
+    from lineup import experiment, sweep
+
+    experiment.TASKS["fake"] = "fake_tasks:work"
+    grids = [{"model": ["slow"], "blocks": list(range(1, 13))}]
+    whole = experiment.Experiment(title="t", task="fake", grids=grids)
+    tell = lambda task, text: print(text, flush=True)
+    sweep.run_sweep(whole, sys.argv[1], engine="processes", workers=2, progress=tell)
+"""
+
+
+def test_a_killed_run_loses_nothing_that_was_done(calls, tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(SWEEP)
+    environment = os.environ | {"PYTHONPATH": PLACES}
+    command = [sys.executable, script, tmp_path / "out"]
+    run = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True)
+    said = []
+    while said.count("done") < 3:
+        said.append(run.stdout.readline().strip())
+    run.kill()  # as by kill -9
+    run.communicate(timeout=20)
+    time.sleep(0.5)  # what its processes had begun
+    before = calls()
+    whole = experiment("slow", blocks=range(1, 13))
+    told = []
+    table = run_sweep(whole, tmp_path / "out", progress=lambda *said: told.append(said))
+    assert set(table.failure) == {""}
+    assert table.length.tolist() == [2 * k for k in range(1, 13)]
+    kept = [task.label for task, text in told if text == "kept"]
+    assert 3 <= len(kept) < 12
+    assert sorted([*kept, *calls()[len(before) :]]) == sorted(f"slow-{k}" for k in range(1, 13))
 
 
 INTERRUPTED = """
@@ -136,7 +178,7 @@ def test_an_interrupt_ends_the_worker_processes_too(calls, tmp_path):
     script.write_text(INTERRUPTED)
     run = subprocess.Popen(
         [sys.executable, script, tmp_path],
-        env=os.environ | {"PYTHONPATH": str(ROOT / "tests")},
+        env=os.environ | {"PYTHONPATH": PLACES},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -177,7 +219,7 @@ def test_a_bad_experiment_file_is_refused_in_one_line(tmp_path, fault):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"task": "paint"}, "unknown task 'paint'; known: table2, fake"),
+        ({"task": "paint"}, "unknown task 'paint'; known: table2, path, .*, fake"),
         ({"grids": [{"model": "a", "blocks": 1, "size": 3}]}, "unknown setting 'size'"),
         ({"grids": [{"model": "a"}]}, "needs the setting 'blocks'"),
         ({"grids": [{"model": ["a", "a"], "blocks": 1}]}, "two tasks .* 'a-1'"),
@@ -193,7 +235,7 @@ def test_settings_that_do_not_fit_are_refused_before_anything_runs(
 
 
 def test_unknown_engine_workers_and_variant(calls, tmp_path):
-    with pytest.raises(ValueError, match="unknown engine 'threads'; known: serial, processes"):
+    with pytest.raises(ValueError, match="unknown engine 'threads'; known: serial, processes, d"):
         run_sweep(experiment("a"), tmp_path, engine="threads")
     with pytest.raises(ValueError, match="workers must be at least 1, got 0"):
         run_sweep(experiment("a"), tmp_path, workers=0)

@@ -102,7 +102,8 @@ def test_the_table_of_a_design_needs_no_sweep():
 
 def test_files(tmp_path):
     rows = table(GOOD, CRASHED)
-    csv, md, tex = write_table(rows, tmp_path)
+    csv, md, tex, html = write_table(rows, tmp_path)
+    assert html.read_text().count("<tr") == 4  # a heading, two rows, totals
     pd.testing.assert_frame_equal(
         pd.read_csv(
             csv, keep_default_na=False, na_values={c: [""] for c in COLUMNS if c != "failure"}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -11,6 +11,8 @@ from ._common import Out, Workers, console, end, n_cores, shortfalls
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from ..experiment import Experiment, Task
 
 EXPERIMENTS = Path(__file__).parents[2] / "experiments"
 
@@ -29,20 +31,27 @@ def sweep(
     config: Annotated[Path, typer.Argument(help="An experiment file (experiments/FORMAT.md).")],
     out: Out = Path("results"),
     variant: Annotated[str | None, typer.Option(help="A variant that the file defines.")] = None,
-    engine: Annotated[str, typer.Option(help="serial or processes.")] = "processes",
+    engine: Annotated[str, typer.Option(help="serial, processes or dask.")] = "processes",
     workers: Workers = None,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Address of the scheduler of a Dask cluster.")
+    ] = None,
 ) -> None:
     """Run an experiment file, or what is left of it."""
-    _run_experiment(config, out, variant, engine, workers)
+    _run_experiment(config, out, variant, engine, workers, scheduler)
 
 
 def _run_experiment(
-    file: Path, out: Path, variant: str | None, engine: str, workers: int | None
+    file: Path,
+    out: Path,
+    variant: str | None,
+    engine: str,
+    workers: int | None,
+    scheduler: str | None = None,
 ) -> None:
-    from .. import tables
     from .._progress import Reporter
-    from ..storage import write_whole
-    from ..sweep import read_experiment, run_sweep, tasks
+    from ..experiment import read_experiment, tasks
+    from ..sweep import run_sweep
 
     experiment = read_experiment(file)
     name = file.stem if variant is None else f"{file.stem}-{variant}"
@@ -55,19 +64,44 @@ def _run_experiment(
             variant=variant,
             engine=engine,
             workers=n_cores() if workers is None else workers,
+            scheduler=scheduler,
             progress=lambda task, stage: reporter(task.label, stage),
         )
-    if experiment.task == "table2":
-        table = tables.table2(rows)
-        names = [Path(str(task.settings["model"])).stem for task in todo]
-        files = [t.folder / f"{n}.folding.json" for t, n in zip(todo, names, strict=True)]
-        written = tables.write_table(table, out, name) + draw_chains(table, files, out, name)
-        screen.print(tables.terminal_table(table))
-    else:
-        table = rows
-        written = [write_whole(out / f"{name}.csv", rows.to_csv(index=False))]
+    write = _write_table2 if experiment.task == "table2" else _write_rows
+    table, view, written = write(rows, todo, experiment, out, name)
+    screen.print(view)
     typer.echo(f"written: {', '.join(str(f) for f in written)}")
     end(shortfalls(table))
+
+
+def _write_table2(
+    rows: pd.DataFrame, done: list[Task], experiment: Experiment, out: Path, name: str
+) -> tuple[pd.DataFrame, Any, list[Path]]:
+    """The table beside the paper's, for the screen too, and the files written."""
+    from .. import tables
+
+    table = tables.table2(rows)
+    names = [Path(str(task.settings["model"])).stem for task in done]
+    files = [t.folder / f"{n}.folding.json" for t, n in zip(done, names, strict=True)]
+    written = tables.write_table(table, out, name) + draw_chains(table, files, out, name)
+    return table, tables.terminal_table(table), written
+
+
+def _write_rows(
+    rows: pd.DataFrame, done: list[Task], experiment: Experiment, out: Path, name: str
+) -> tuple[pd.DataFrame, Any, list[Path]]:
+    """The rows, the table for the screen, and the files written."""
+    from .. import draw, styled
+    from ..storage import write_whole
+    from ..sweep import seconds
+
+    written = styled.write_rows(rows, out, name, experiment)
+    if experiment.plot:
+        figure = draw.experiment(rows, experiment.plot, experiment.title)
+        written.append(draw.save(figure, out / f"{name}.png"))
+    times = seconds(done).to_csv(index=False, lineterminator="\n")
+    written.append(write_whole(out / f"{name}-seconds.csv", times))
+    return rows, styled.terminal(rows, experiment), written
 
 
 def draw_chains(table: pd.DataFrame, files: list[Path], out: Path, name: str) -> list[Path]:

@@ -8,6 +8,7 @@ from .apart import layer, nodes, storeys
 from .decomposition import decomposition
 from .dots import dots
 from .ends import overlap, shared_links
+from .experiments import experiment
 from .files import save
 from .interactive import explore
 from .linkages import depths, projection, two_stages
@@ -35,6 +36,7 @@ __all__ = [
     "decomposition",
     "depths",
     "dots",
+    "experiment",
     "explore",
     "layer",
     "layering",
