@@ -150,7 +150,7 @@ draw.dots(coverage, "share of the voxels (dashed: 5/6)", "Coverage", mark=5 / 6)
 #
 # The paper's motion planning beside all of ours: for the first set from the mesh to the
 # certificate, for the second set path and motion. The seconds are those of one core of a small
-# shared machine.
+# shared machine, which was busy with other work during the first set.
 
 # %%
 stages = ours[[column for column in ours if column.startswith("seconds_")]]
