@@ -110,7 +110,9 @@ print(f"{len(pairs)} of 20 ordered pairs certified")
 # that only shows this notebook there are three moments in its place.
 
 # %%
-lu.player(motion, certificate=verdict, name="bunny to duck")
+film = lu.player(motion, certificate=verdict, name="bunny to duck")
+assert (film.time, film.playing) == (0, False)
+film
 
 # %% [markdown]
 # `lu.write_player(motion, "bunny-to-duck.html")` writes the same as one file for any browser, and
