@@ -33,6 +33,8 @@ notebooks: $(STAMP)  ## Execute every notebook again from its .py half
 	env -u LINEUP_MODELS $(BIN)/jupyter nbconvert --log-level WARN --to notebook --inplace --execute \
 	  --ExecutePreprocessor.record_timing=False --ExecutePreprocessor.store_widget_state=False \
 	  notebooks/*.ipynb
+	sed -i.bak '/"application\/vnd.jupyter.widget-view+json": {/,/},/d' notebooks/*.ipynb
+	rm notebooks/*.ipynb.bak
 
 benchmarks: $(STAMP)  ## Our paths beside those of other tools, and how their time grows: results/
 	$(BIN)/python benchmarks/paths.py peers

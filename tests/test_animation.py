@@ -9,7 +9,7 @@ from PIL import Image
 
 import lineup as lu
 from lineup import draw
-from lineup.draw.animation import _scenes
+from lineup.draw.story import scenes_of
 from lineup.kinematics import Move
 
 CORNER = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (1, 2, 0)])
@@ -48,7 +48,7 @@ def folded(shape, ends=2):
 
 def test_either_shape_stands_upright_on_the_way_from_one_to_the_other():
     a, b = folded((4, 2, 1)), folded((2, 2, 2))
-    scenes = list(_scenes(lu.transform(a, b), 9))
+    scenes = list(scenes_of(lu.transform(a, b), 9))
     assert np.array_equal(scenes[0][0].pose, a.path.voxels)
     np.testing.assert_allclose(scenes[-1][0].pose, b.path.voxels, atol=1e-9)
     titles = [moment.title for moment, _ in scenes]
@@ -64,7 +64,7 @@ def test_a_way_without_the_line_is_all_in_sight():
     a, b = folded((4, 3, 2), ends=1), folded((2, 3, 4), ends=1)
     motion = lu.transform(a, b, within=(18, 18, 18))
     assert lu.certify(motion, within=(18, 18, 18)).ok
-    scenes = list(_scenes(motion, 12))
+    scenes = list(scenes_of(motion, 12))
     assert [moment.title for moment, _ in scenes][1:-1] == ["from shape to shape"] * 10
     for moment, view in scenes:
         assert (np.abs(view.seen(moment.pose)[:, :2]) <= view.half_height).all()

@@ -18,7 +18,7 @@ from polycubes import polycubes
 import lineup as lu
 from lineup import draw
 from lineup.contraction import contraction_pairs
-from lineup.draw import moments, plans, render
+from lineup.draw import moments, plans, render, story
 from lineup.draw.bodies import chain_body, left_out_body, solid_body
 from lineup.draw.page import DPI
 from lineup.draw.view import Capsules, Cubes, colours, view_of
@@ -264,8 +264,8 @@ def test_an_unfinished_motion_is_not_called_straight(folding):
 def test_bends_are_corners(path):
     bars = np.diff(path.voxels, axis=0)
     corners = sum(tuple(a) != tuple(b) for a, b in pairwise(bars))
-    assert moments.bends(path.voxels) == corners > 0
-    assert moments.bends(np.arange(5)[:, None] * [0, 1, 0]) == 0
+    assert story.bends(path.voxels) == corners > 0
+    assert story.bends(np.arange(5)[:, None] * [0, 1, 0]) == 0
 
 
 def test_a_pose_that_left_the_view_is_brought_back():

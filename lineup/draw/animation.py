@@ -6,33 +6,22 @@ import os
 from collections.abc import Callable, Iterator
 from io import BytesIO
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from PIL import Image
 
-from ..grid import FloatArray, IntArray
-from ..kinematics import frames
 from ..solid import Folding, Motion
-from ..transformation.reversal import TURNS
 from .files import whole
-from .moments import PANEL, bends, moment_panel, told
+from .moments import PANEL, moment_panel
 from .page import page
-from .view import View, view_of
+from .story import Moment, scenes_of
+from .view import View
 
 GIF_RATE, MP4_RATE = 6, 24
 """Pictures a second, where their number is not given."""
 
 _DPI = 80
 _LINGER = 1.0  # seconds longer that the first and the last picture stay
-
-
-class _Moment(NamedTuple):
-    """A pose after so many moves, and what to say of it."""
-
-    pose: FloatArray
-    title: str
-    where: str
 
 
 def animation(
@@ -80,85 +69,13 @@ def animation(
         raise ValueError(f"a film needs 2 pictures and some time, got {pictures} and {seconds} s")
     write = _gif if ending == ".gif" else _mp4()
     motion = motion.motion if isinstance(motion, Folding) else motion
-    film = (_picture(moment, view) for moment, view in _scenes(motion, pictures))
+    film = (_picture(moment, view) for moment, view in scenes_of(motion, pictures))
     with whole(file, ending) as part:
         write(part, film, seconds / pictures)
     return Path(file)
 
 
-def _scenes(motion: Motion, pictures: int) -> Iterator[tuple[_Moment, View]]:
-    """Moments, the first, the last and those equally spaced between, each with its camera."""
-    shown, line = _shown(motion, pictures)
-    near = view_of(motion.start).widened(0.8)
-    if not len(motion.goal):
-        for move, pose in shown:
-            yield _Moment(pose, *told(motion, move, pose)), near
-    elif line is None:
-        wide = view_of(np.concatenate([pose for _, pose in shown]))
-        for move, pose in shown:
-            yield _Moment(pose, *_told_between(motion, move)), wide
-    else:
-        upright = _turn_to(motion.goal, shown[-1][1])
-        far = view_of(motion.goal).widened(0.8)
-        for move, pose in shown[:line]:
-            yield _Moment(pose, *told(motion, move, pose)), near
-        for move, pose in shown[line:]:
-            yield _Moment(_carried(pose, upright), *_told_after(motion, move, pose)), far
-
-
-def _shown(motion: Motion, pictures: int) -> tuple[list[tuple[int, FloatArray]], int | None]:
-    """Poses to show, each after how many moves, and the first of them that is not before the line.
-
-    None if the motion never comes to the straight line.
-    """
-    substeps = max(1, (pictures - 1) // max(len(motion), 1))
-    wanted = set(np.linspace(0, substeps * len(motion), pictures).astype(int).tolist())
-    shown: list[tuple[int, FloatArray]] = []
-    line = None
-    for k, pose in enumerate(frames(motion, substeps=substeps)):
-        if line is None and not bends(pose):
-            line = len(shown)
-        if k in wanted:
-            shown.append((k // substeps, pose))
-    return shown, line
-
-
-class _Turn(NamedTuple):
-    """The rotation about one point that is then carried to another."""
-
-    rotation: FloatArray
-    origin: FloatArray
-    target: FloatArray
-
-
-def _turn_to(goal: IntArray, last: FloatArray) -> _Turn:
-    bars, wanted = np.diff(last, axis=0), np.diff(goal, axis=0)
-    off = [np.abs(bars @ turn.T - wanted).sum() for turn in TURNS]
-    return _Turn(TURNS[int(np.argmin(off))].astype(float), last[0], goal[0].astype(float))
-
-
-def _carried(pose: FloatArray, turn: _Turn) -> FloatArray:
-    carried: FloatArray = (pose - turn.origin) @ turn.rotation.T + turn.target
-    return carried
-
-
-def _told_after(motion: Motion, move: int, pose: FloatArray) -> tuple[str, str]:
-    """What to say of a pose between the straight line and the goal."""
-    share = bends(pose) / max(bends(motion.goal), 1)
-    where = f"after move {move:,} of {len(motion):,}"
-    if share == 0:
-        return "straight", where
-    done = move == len(motion)
-    return ("folded anew" if done else f"{100 * share:.0f} % folded anew"), where
-
-
-def _told_between(motion: Motion, move: int) -> tuple[str, str]:
-    """What to say of a motion from shape to shape that is never straight."""
-    title = {0: "folded", len(motion): "folded anew"}.get(move, "from shape to shape")
-    return title, f"after move {move:,} of {len(motion):,}"
-
-
-def _picture(moment: _Moment, view: View) -> Image.Image:
+def _picture(moment: Moment, view: View) -> Image.Image:
     figure = page(*PANEL)
     moment_panel(figure, moment.pose, view, moment.title, moment.where)
     drawn = BytesIO()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
@@ -62,16 +63,7 @@ def dots(
         there = row[np.isfinite(row)]
         if len(there):
             axes.plot([there.min(), there.max()], [line, line], color=PALE, lw=2, zorder=1)
-    for column, name in enumerate(table.columns):
-        axes.scatter(
-            values[:, column],
-            np.arange(len(names)) + _APART * (column - (len(table.columns) - 1) / 2),
-            s=38,
-            color=_COLOURS[column],
-            marker=_MARKERS[column],
-            label=str(name),
-            zorder=3,
-        )
+    _place(axes, values, [str(name) for name in table.columns])
     if mark is not None:
         axes.axvline(mark, color=INK, lw=1, ls="--", zorder=2)
     axes.set_yticks(range(len(names)), names, fontsize=10, color=INK)
@@ -86,6 +78,20 @@ def dots(
     key = (0.01, 1 - 0.88 / height)
     figure.legend(loc="lower left", bbox_to_anchor=key, ncols=8, frameon=False, columnspacing=1.2)
     return figure
+
+
+def _place(axes: Axes, values: np.ndarray, names: list[str]) -> None:
+    """The dots of each column, those of neighbouring columns a little apart."""
+    for column, name in enumerate(names):
+        axes.scatter(
+            values[:, column],
+            np.arange(len(values)) + _APART * (column - (len(names) - 1) / 2),
+            s=38,
+            color=_COLOURS[column],
+            marker=_MARKERS[column],
+            label=name,
+            zorder=3,
+        )
 
 
 def _checked(table: pd.DataFrame, log: bool) -> np.ndarray:

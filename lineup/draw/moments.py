@@ -6,14 +6,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure, FigureBase
-from numpy.typing import ArrayLike
 
 from ..grid import FloatArray
-from ..kinematics import frames
 from ..solid import Folding, Motion
 from .bodies import chain_body
 from .page import GREY, INK, PALE, page, picture
-from .view import View, colours, view_of
+from .story import scenes_of
+from .view import View, colours
 
 PANEL = (5.2, 4.3)  # inches
 
@@ -23,7 +22,8 @@ def unfolding(folding: Folding | Motion, moments: int = 6) -> Figure:
 
     Each is seen by a camera that stays where it saw the folded chain. Since the straightened part
     of the chain soon leaves its view, the whole chain stands beside it, smaller and smaller. The
-    share still folded is the number of joints that bend, relative to the folded pose.
+    share still folded is the number of joints that bend, relative to the folded pose. A motion from
+    shape to shape is told as in `animation`.
 
     Raises
     ------
@@ -42,39 +42,13 @@ def unfolding(folding: Folding | Motion, moments: int = 6) -> Figure:
     if moments < 2:
         raise ValueError(f"moments must be at least 2, got {moments}")
     motion = folding.motion if isinstance(folding, Folding) else folding
-    when = np.rint(np.linspace(0, len(motion), moments)).astype(int).tolist()
-    wanted = set(when)
-    poses = {k: pose for k, pose in enumerate(frames(motion)) if k in wanted}
     columns = min(3, moments)
     rows = -(-moments // columns)
     figure = page(PANEL[0] * columns, PANEL[1] * rows)
     panels = figure.subfigures(rows, columns, squeeze=False).ravel()
-    view = view_of(motion.start).widened(0.8)
-    for panel, move in zip(panels, when, strict=False):
-        title, where = told(motion, move, poses[move])
-        moment_panel(panel, poses[move], view, title, where)
+    for panel, (moment, view) in zip(panels, scenes_of(motion, moments), strict=False):
+        moment_panel(panel, moment.pose, view, moment.title, moment.where)
     return figure
-
-
-def told(motion: Motion, move: int, pose: FloatArray) -> tuple[str, str]:
-    """What to say of the pose after so many moves: how far it is unfolded, and where that is."""
-    if move == 0:
-        return "folded", f"before the first of {len(motion):,} moves"
-    left = bends(pose) / max(bends(motion.start), 1)
-    where = f"after move {move:,} of {len(motion):,}"
-    return ("straight" if left == 0 else f"{100 * left:.0f} % still folded"), where
-
-
-def bends(pose: ArrayLike) -> int:
-    """Number of joints whose two bars differ in direction.
-
-    Examples
-    --------
-    >>> bends([[0, 0, 0], [1, 0, 0], [2, 0, 0], [2, 1, 0]])
-    1
-    """
-    turns = np.diff(np.asarray(pose, dtype=float), n=2, axis=0)
-    return int((np.abs(turns) > 1e-6).any(axis=1).sum())
 
 
 def moment_panel(panel: FigureBase, pose: FloatArray, view: View, title: str, where: str) -> None:

@@ -91,6 +91,9 @@ def _widget_class() -> type[anywidget.AnyWidget]:
             self._item = item
             self._picture: bytes | None = None
 
+        def __repr__(self) -> str:
+            return "player of a motion"
+
         def _repr_mimebundle_(self, **options: Any) -> Any:
             bundle = super()._repr_mimebundle_(**options)
             if bundle is None:
