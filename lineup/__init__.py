@@ -63,6 +63,9 @@ _HOME = {
     "load": "storage",
     "write_player": "viewer",
     "player": "viewer",
+    "rank_orientations": "orientation",
+    "appearance": "looks",
+    "shell": "shells",
     "lineup": "pipeline",
     "add": "pipeline",
 }

@@ -16,8 +16,9 @@ import pooch  # type: ignore[import-untyped]
 
 from .meshes import Surface, read_surface, surface_of, turned_upright
 from .shapes import triangulated
+from .shells import Thickness
 from .solid import VoxelSolid
-from .voxelization import check_voxels, fitted
+from .voxelization import check_voxels, fitted_shell
 
 FOLDER_VARIABLE = "LINEUP_MODELS"
 """Environment variable naming a folder of upright meshes NAME.ply; used before all else."""
@@ -100,7 +101,10 @@ def models() -> pd.DataFrame:
 
 
 def model(
-    name: str, voxels: int = 1600, up: str | tuple[float, float, float] | None = None
+    name: str,
+    voxels: int = 1600,
+    up: str | tuple[float, float, float] | None = None,
+    shell: Thickness | None = None,
 ) -> VoxelSolid:
     """A model of the catalogue, voxelized (Section 3, Table 2).
 
@@ -116,6 +120,8 @@ def model(
     up : {"+x", "-x", "+y", "-y", "+z", "-z"} or 3 numbers, optional
         Direction of the upright model that becomes +z, to lay it down; the same wherever the mesh
         comes from. None leaves it upright.
+    shell : int or function of z, optional
+        Thickness of a shell of `voxels` voxels, as in `voxelize`.
 
     Returns
     -------
@@ -138,7 +144,25 @@ def model(
     check_voxels(voxels)
     surface = turned_upright(_upright_surface(entry), "+z" if up is None else up)
     direction = up if up is None or isinstance(up, str) else [float(c) for c in up]
-    return fitted(surface, voxels, name, {"up": direction or "+z"})
+    return fitted_shell(surface, voxels, name, {"up": direction or "+z"}, shell)
+
+
+def surface_for(
+    source: object, up: str | tuple[float, float, float] | None = None
+) -> tuple[Surface, str]:
+    """The upright surface of a model by its name, or of what `voxelize` takes; and a name for it.
+
+    Raises
+    ------
+    FileNotFoundError, ValueError
+        As `model` and `voxelize`.
+    """
+    if isinstance(source, str) and not Path(source).suffix:  # a mesh file has an ending
+        surface, name = _upright_surface(_entry(source)), source
+    else:
+        name = Path(source).stem if isinstance(source, str | os.PathLike) else ""
+        surface = surface_of(source)
+    return turned_upright(surface, "+z" if up is None else up), name
 
 
 def fetch(

@@ -20,6 +20,8 @@ from scipy import ndimage
 from .grid import BoolArray, FloatArray, voids
 from .meshes import Surface, surface_of, turned_upright
 from .sampling import Sampling, euler_number, largest_component, sampled, shares_inside
+from .shells import Thickness
+from .shells import shell as hollowed
 from .solid import VoxelSolid, check_occupancy
 
 MAX_VOXELS = 200_000
@@ -36,6 +38,8 @@ _WRONG_TOPOLOGY = 0.02
 _NEAR_BEST = 0.01
 _SAME = 1e-9
 _SHORTLIST = 48
+_SHELLS_TRIED, _SHELL_POWER = 6, 1.3
+"""Solids tried for the count of their shell; a shell grows slower than the solid."""
 
 
 def voxelize(
@@ -43,6 +47,7 @@ def voxelize(
     voxels: int = 1600,
     up: str | tuple[float, float, float] = "+z",
     name: str | None = None,
+    shell: Thickness | None = None,
 ) -> VoxelSolid:
     """A connected, void-free solid of about `voxels` voxels in the shape of a mesh (Section 3).
 
@@ -60,6 +65,9 @@ def voxelize(
         Direction of the mesh that becomes +z.
     name : str, optional
         Name of the solid; that of the file if not given.
+    shell : int or function of z, optional
+        Thickness of a vented shell in place of the solid, as `lineup.shell` takes it; then the
+        target is the count of the shell, whose voxels are smaller than those of a solid.
 
     Returns
     -------
@@ -93,7 +101,38 @@ def voxelize(
     check_voxels(voxels)
     surface = turned_upright(surface_of(mesh_or_path), up)
     direction = up if isinstance(up, str) else [float(c) for c in up]
-    return fitted(surface, voxels, name, {"up": direction})
+    return fitted_shell(surface, voxels, name, {"up": direction}, shell)
+
+
+def fitted_shell(
+    surface: Surface,
+    voxels: int,
+    name: str,
+    provenance: dict[str, Any],
+    thickness: Thickness | None,
+) -> VoxelSolid:
+    """As `fitted`; with a thickness, a shell of about `voxels` voxels ("iou" is its outside's)."""
+    if thickness is None:
+        return fitted(surface, voxels, name, provenance)
+    wanted, found, why = voxels, [], ""
+    for _ in range(_SHELLS_TRIED):
+        try:
+            hollow = hollowed(fitted(surface, wanted, name, provenance), thickness)
+        except ValueError as error:  # too coarse for a cavity; smaller voxels may have one
+            why, wanted = str(error), min(MAX_VOXELS, round(1.4 * wanted))
+            continue
+        found.append(hollow)
+        if not _miss(hollow.size, voxels):
+            break
+        wanted = min(MAX_VOXELS, round(wanted * (voxels / hollow.size) ** _SHELL_POWER))
+    if not found:
+        raise ValueError(why)
+    best = min(found, key=lambda solid: _miss(solid.size, voxels))
+    short = f"no shell of {voxels} voxels within 2 %: nearest count"
+    notes = [best.source["note"], short if _miss(best.size, voxels) else ""]
+    note = "; ".join(filter(None, notes))
+    source = {**best.source, "target": int(voxels), "note": note}
+    return VoxelSolid(best.occupancy, best.pitch, name, source)
 
 
 def check_voxels(voxels: object) -> None:
@@ -108,17 +147,19 @@ def check_voxels(voxels: object) -> None:
 
 def fitted(surface: Surface, voxels: int, name: str, provenance: dict[str, Any]) -> VoxelSolid:
     """The solid that fits an upright surface best; `provenance` is added to the surface's own."""
-    sampling = sampled(surface, _cells_wanted(voxels))
+    sampling = sampled(surface, cells_wanted(voxels))
     fit = _best_fit(sampling, voxels)
     voids_of_mesh = sampling.n_void * float((sampling.cell / fit.pitch).prod())
     hollow = sampling.n_void > 0
-    shares = shares_inside(surface, fit.origin, fit.pitch, fit.occupancy.shape, hollow)
+    # The lowest line of an offset grid may lie within the mesh; a margin holds what is below it.
+    padded = np.pad(fit.occupancy, ((1, 0), (1, 0), (1, 0)))
+    shares = shares_inside(surface, fit.origin - fit.pitch, fit.pitch, padded.shape, hollow)
     occupancy, origin = _cropped(fit.occupancy, fit.origin, fit.pitch)
     source = {
         **surface.provenance,
         **provenance,
         "target": int(voxels),
-        "iou": round(_iou(fit.occupancy, shares, float(shares.sum())), 6),
+        "iou": round(_iou(padded, shares, float(shares.sum())), 6),
         "pitch": fit.pitch,
         "origin": [float(c) for c in origin],
         "voids_filled": fit.voids_filled + round(voids_of_mesh),
@@ -202,7 +243,7 @@ class _Cut:
     miss: float
 
 
-def _cells_wanted(voxels: int) -> int:
+def cells_wanted(voxels: int) -> int:
     """Sampling cells inside; rounded up so that nearby counts share one sampling."""
     per_voxel = 216 if voxels <= _FEW else 64
     return int(per_voxel * 2 ** np.ceil(np.log2(max(voxels, 256))))

@@ -29,11 +29,17 @@ ORDER = [
         "notation",
         "judging",
     ),
+<<<<<<< HEAD
     *("meshes", "implicit", "shapes", "sampling", "voxelization", "catalog", "worked"),
+=======
+    *("meshes", "implicit", "shapes", "sampling", "shells", "voxelization", "catalog"),
+    "looks",
+>>>>>>> 607ca8e (Orientation: rank directions by coverage, likeness, MSCs and standing; shells; appearance measured)
     *("visits", "reeb", "planar", "linking", "assumptions", "paper", "spatial", "refinement"),
     *("layered", "bounds", "subset_sums", "contraction"),
     *("motion", "folding", "trimming", "symbols", "transformation", "scenarios"),
     *("stress", "storage", "robot", "verification", "pipeline", "_sources", "engines", "sweep"),
+    *("headings", "orientation"),
     *("tables",),
     *("block", "draw", "viewer", "fabrication", "manual"),
     *("_progress", "cli"),

@@ -12,7 +12,18 @@ from typing import NoReturn
 
 import typer
 
-from . import chains, experiments, films, kit, manual, playing, printing, robot, strength
+from . import (
+    chains,
+    experiments,
+    films,
+    kit,
+    manual,
+    orienting,
+    playing,
+    printing,
+    robot,
+    strength,
+)
 from .experiments import EXPERIMENTS
 
 __all__ = ["EXPERIMENTS", "app", "main", "run"]
@@ -40,6 +51,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "manual": manual.manual,
     "strength": strength.strength,
     "robot": robot.robot,
+    "orient": orienting.orient,
     "sweep": experiments.sweep,
 }
 for name, command in COMMANDS.items():

@@ -66,22 +66,27 @@ def readable(source: str) -> str:
     return source
 
 
-def solid_of(source: str, voxels: int, up: str | None = None) -> VoxelSolid:
+def solid_of(
+    source: str, voxels: int, up: str | None = None, shell: int | None = None
+) -> VoxelSolid:
     """The solid stored in a file, or that of a mesh file or a model of the catalogue."""
     from .. import catalog, voxelization
+    from ..shells import shell as hollowed
     from ..solid import VoxelSolid
     from ..storage import load
     from ..verification import stored_name
 
     if not Path(known(source)).is_file():
-        return catalog.model(source, voxels, up)
+        return catalog.model(source, voxels, up, shell)
     if not source.endswith(".json"):
-        return voxelization.voxelize(source, voxels, up or "+z")
+        return voxelization.voxelize(source, voxels, up or "+z", shell=shell)
     stored = load(source)
     if not isinstance(stored, VoxelSolid):
         raise ValueError(f"{source} holds a {type(stored).__name__}, and a solid is needed")
     if up is not None:
         raise ValueError(f"{source} is made of voxels already, and cannot be turned by --up {up}")
+    if shell is not None:
+        stored = hollowed(stored, shell)
     return stored if stored.name else replace(stored, name=stored_name(Path(source)))
 
 

@@ -158,12 +158,15 @@ def voxelize(
     source: Source,
     voxels: Voxels = 1600,
     up: Annotated[str | None, typer.Option(help="Direction that becomes up: +x ... -z.")] = None,
+    shell: Annotated[
+        int | None, typer.Option(help="Thickness of a vented shell of so many voxels instead.")
+    ] = None,
     out: Out = Path("."),
 ) -> None:
     """Write a model or mesh as voxels: NAME.solid.json."""
     from ..storage import save
 
-    solid = solid_of(source, voxels, up)
+    solid = solid_of(source, voxels, up, shell)
     out.mkdir(parents=True, exist_ok=True)
     file = save(solid, out / f"{solid.name}.solid.json")
     for name, value in solid.source.items():

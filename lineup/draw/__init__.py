@@ -12,6 +12,7 @@ from .files import save
 from .interactive import explore
 from .linkages import depths, projection, two_stages
 from .moments import unfolding
+from .orientations import orientations
 from .plans import layers, reeb
 from .plates import plate
 from .printed import block, slots
@@ -19,6 +20,7 @@ from .regions import checkerboard, contraction, merge, planar_steps
 from .scenarios import run
 from .scenes import chain, contact_sheet, layering, solid, solids
 from .shares import assumptions
+from .silhouettes import silhouettes
 from .spread import spread
 from .strength import standing, strength
 
@@ -39,6 +41,7 @@ __all__ = [
     "layers",
     "merge",
     "nodes",
+    "orientations",
     "overlap",
     "planar_steps",
     "plate",
@@ -47,6 +50,7 @@ __all__ = [
     "run",
     "save",
     "shared_links",
+    "silhouettes",
     "slots",
     "solid",
     "solids",
