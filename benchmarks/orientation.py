@@ -25,7 +25,7 @@ app = typer.Typer(add_completion=False, help=__doc__)
 @app.command()
 def main(
     model: Annotated[list[str] | None, typer.Option(help="A model; without it, six.")] = None,
-    voxels: Annotated[int, typer.Option(help="Voxels of each solid.")] = 800,
+    voxels: Annotated[int, typer.Option(help="Voxels of each solid.")] = 500,
     evaluations: Annotated[int, typer.Option(help="Orientations tried.")] = 24,
     finalists: Annotated[int, typer.Option(help="Orientations folded.")] = 3,
     out: Annotated[Path, typer.Option(help="Folder of the tables.")] = Path("experiments/results"),

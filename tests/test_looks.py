@@ -50,7 +50,7 @@ def test_the_iou_is_that_of_the_voxelizer(duck):
 @pytest.mark.parametrize("up", ["+z", (1.0, 2.0, 3.0)])
 def test_iou_against_winding_numbers(up):
     """Brute force: the winding number at 64 points in each voxel, on a grid twice as wide."""
-    solid = lu.model("elk", voxels=150, up=up)
+    solid = lu.model("elk", voxels=60, up=up)
     surface, _ = lu.catalog.surface_for("elk", up)
     margin = 4
     corner = np.array(solid.source["origin"]) - margin * solid.pitch
@@ -60,7 +60,7 @@ def test_iou_against_winding_numbers(up):
     inside = (surface.winding(at) > 0.5).reshape(x, 4, y, 4, z, 4).mean(axis=(1, 3, 5))
     mine = inside[np.pad(solid.occupancy, margin)].sum()
     iou = mine / (solid.size + inside.sum() - mine)
-    assert solid.source["iou"] == pytest.approx(iou, abs=0.015)
+    assert solid.source["iou"] == pytest.approx(iou, abs=0.02)
 
 
 def test_silhouettes_of_a_mesh_against_points_inside():

@@ -89,7 +89,7 @@ def test_a_cavity_that_cannot_be_vented_is_refused():
 
 
 def test_a_shell_folds_and_certifies():
-    hollow = lu.shell(lu.VoxelSolid(np.ones((6, 6, 6), bool)), 1)
+    hollow = lu.shell(lu.VoxelSolid(np.ones((5, 5, 5), bool)), 1)
     folding = lu.fold(hollow, rounds=200, trial_rounds=20)
     assert lu.certify(folding.motion).ok
     assert lu.certify_path(folding.path, hollow).ok
@@ -98,19 +98,19 @@ def test_a_shell_folds_and_certifies():
 
 def test_a_shell_of_a_mesh_has_the_count_asked_for():
     ball = trimesh.creation.icosphere(subdivisions=3)
-    plain, hollow = lu.voxelize(ball, 500), lu.voxelize(ball, 500, shell=1)
-    assert abs(hollow.size - 500) <= 0.05 * 500
-    assert (hollow.source["note"] == "") == (abs(hollow.size - 500) <= 0.02 * 500)
+    plain, hollow = lu.voxelize(ball, 200), lu.voxelize(ball, 200, shell=1)
+    assert abs(hollow.size - 200) <= 0.1 * 200
+    assert (hollow.source["note"] == "") == (abs(hollow.size - 200) <= 4)
     assert hollow.pitch < plain.pitch
     assert hollow.source["iou"] > plain.source["iou"]
-    assert hollow.source["target"] == 500
+    assert hollow.source["target"] == 200
     with pytest.raises(ValueError, match="no thinner"):
         lu.voxelize(trimesh.creation.box((9, 9, 1)), 81, shell=2)
 
 
 def test_the_command(tmp_path):
     assert (
-        cli.run(["voxelize", "duck", "--voxels", "300", "--shell", "1", "--out", str(tmp_path)])
+        cli.run(["voxelize", "duck", "--voxels", "120", "--shell", "1", "--out", str(tmp_path)])
         == 0
     )
     hollow = lu.load(tmp_path / "duck.solid.json")
