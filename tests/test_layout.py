@@ -29,12 +29,8 @@ ORDER = [
         "notation",
         "judging",
     ),
-<<<<<<< HEAD
-    *("meshes", "implicit", "shapes", "sampling", "voxelization", "catalog", "worked"),
-=======
-    *("meshes", "implicit", "shapes", "sampling", "shells", "voxelization", "catalog"),
+    *("meshes", "implicit", "shapes", "sampling", "shells", "voxelization", "catalog", "worked"),
     "looks",
->>>>>>> 607ca8e (Orientation: rank directions by coverage, likeness, MSCs and standing; shells; appearance measured)
     *("visits", "reeb", "planar", "linking", "assumptions", "paper", "spatial", "refinement"),
     *("layered", "bounds", "subset_sums", "contraction"),
     *("motion", "folding", "trimming", "symbols", "transformation", "scenarios"),
