@@ -131,8 +131,8 @@ def _frame(axes: Axes, table: pd.DataFrame) -> None:
         if (table["kind"] == kind).any()
     ]
     axes.legend(handles=marks, loc="best", frameon=False, fontsize=9)
-    most = table[["layered", "folded"]].max(axis=None)
-    axes.set_xlim(table["layered"].min() - 0.005, most + 0.005)
+    most = float(np.nanmax(table[["layered", "folded"]].to_numpy(float)))
+    axes.set_xlim(float(table["layered"].min()) - 0.005, most + 0.005)
     axes.set_xlabel("coverage: layered path; arrow: folded", fontsize=10, color=INK)
     axes.set_ylabel("IoU with the mesh", fontsize=10, color=INK)
     axes.grid(color=PALE, lw=0.6)
