@@ -7,6 +7,7 @@ from typing import Annotated
 
 import pandas as pd
 import typer
+from joining import joined
 
 import lineup as lu
 from lineup.storage import write_whole
@@ -29,15 +30,12 @@ def main(
 ) -> None:
     """OUT/appearance.csv (all), OUT/appearance.md (the first count; medians by count)."""
     counts = voxels or [1600, 400, 6500]
-    tables: list[pd.DataFrame] = []
     out.mkdir(parents=True, exist_ok=True)
-    for target in counts:
-        for name in model or MODELS:
-            tables.append(measured(name, target, folded=target == counts[0]))
-            typer.echo(f"{name} at {target}: {tables[-1]['iou'].iloc[0]:.4f}")
-            table = pd.concat(tables, ignore_index=True).round(6)
-            write_whole(out / "appearance.csv", table.to_csv(index=False))
-            write_whole(out / "appearance.md", page(table, counts[0]))
+    for name in model or MODELS:
+        parts = [measured(name, target, folded=target == counts[0]) for target in counts]
+        typer.echo(f"{name}: {parts[0]['iou'].iloc[0]:.4f}")
+        table = joined(pd.concat(parts, ignore_index=True), out / "appearance.csv")
+        write_whole(out / "appearance.md", page(table, counts[0]))
 
 
 def measured(name: str, target: int, folded: bool) -> pd.DataFrame:

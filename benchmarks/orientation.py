@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import pandas as pd
 import typer
+from joining import joined
 from scipy.stats import spearmanr
 
 import lineup as lu
@@ -31,8 +32,6 @@ def main(
     out: Annotated[Path, typer.Option(help="Folder of the tables.")] = Path("experiments/results"),
 ) -> None:
     """OUT/orientations.csv (all rankings), OUT/orientations_gain.csv and .md."""
-    gains: list[dict[str, Any]] = []
-    rankings: list[pd.DataFrame] = []
     out.mkdir(parents=True, exist_ok=True)
     for name in model or MODELS:
         table = lu.rank_orientations(
@@ -44,12 +43,10 @@ def main(
             starts=STARTS,
         )
         table.insert(0, "model", name)
-        rankings.append(table)
-        gains.append(gain(name, voxels, table))
-        typer.echo(f"{name}: {gains[-1]['gain_folded']:+.4f} folded")
-        stored(pd.concat(rankings, ignore_index=True).round(6), out / "orientations.csv")
-        summary = pd.DataFrame(gains).round(6)
-        stored(summary, out / "orientations_gain.csv")
+        row = gain(name, voxels, table)
+        typer.echo(f"{name}: {row['gain_folded']:+.4f} folded")
+        joined(table, out / "orientations.csv")
+        summary = joined(pd.DataFrame([row]), out / "orientations_gain.csv")
         page = summary.to_markdown(index=False, floatfmt=".4g")
         write_whole(out / "orientations_gain.md", f"{page}\n")
 
@@ -64,6 +61,8 @@ def gain(name: str, voxels: int, table: pd.DataFrame) -> dict[str, Any]:
     row: dict[str, Any] = {
         "model": name,
         "source": before.source["kind"],
+        "voxels": voxels,
+        "evaluations": len(table),
         "kind": best["kind"],
         "tilt_deg": best["tilt_deg"],
         "mscs_upright": len(lu.traverse(lu.reeb_graph(before)).mscs),
@@ -103,10 +102,6 @@ def rank_correlation(first: pd.Series, second: pd.Series) -> float:
     if first.nunique() < 2 or second.nunique() < 2:
         return float("nan")
     return float(spearmanr(first, second).statistic)
-
-
-def stored(table: pd.DataFrame, file: Path) -> None:
-    write_whole(file, table.to_csv(index=False))
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import pandas as pd
 import typer
+from joining import joined
 
 import lineup as lu
 from lineup.storage import write_whole
@@ -39,9 +40,9 @@ def main(
     out: Annotated[Path, typer.Option(help="Folder of the tables.")] = Path("experiments/results"),
 ) -> None:
     """OUT/shell.csv and .md."""
-    rows: list[dict[str, Any]] = []
     out.mkdir(parents=True, exist_ok=True)
     for name in model or MODELS:
+        rows: list[dict[str, Any]] = []
         solid = lu.model(name, voxels)
         for kind, made in variants(name, solid, voxels).items():
             row = {"model": name, "source": solid.source["kind"], "what": kind}
@@ -50,8 +51,7 @@ def main(
             except ValueError as error:
                 rows.append(row | {"reason": str(error)})
             typer.echo(f"{name}, {kind}: {rows[-1]['reason']}")
-        table = pd.DataFrame(rows).round(6)
-        write_whole(out / "shell.csv", table.to_csv(index=False))
+        table = joined(pd.DataFrame(rows), out / "shell.csv")
         page = table.drop(columns=["source"]).to_markdown(index=False, floatfmt=".4g")
         write_whole(out / "shell.md", f"{page}\n")
 

@@ -14,11 +14,15 @@ import lineup as lu
 
 sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))
 
+import appearance
 import boxes
 import folding
+import joining
 import motion
+import orientation
 import paths
 import peers
+import shell
 import slots
 import strength
 
@@ -203,3 +207,39 @@ def test_boxes_on_a_tiny_one(tmp_path, monkeypatch):
     assert duck["clearance"] >= 0.999
     assert not nothing["certified"]
     assert "nothing" in nothing["reason"]
+
+
+@pytest.mark.slow
+def test_orientations_on_a_tiny_solid(tmp_path):
+    chosen = ["--model", "duck", "--voxels", 60, "--evaluations", 7, "--finalists", 2]
+    run(*chosen, "--out", tmp_path, app=orientation.app)
+    row = pd.read_csv(tmp_path / "orientations_gain.csv").iloc[0]
+    table = pd.read_csv(tmp_path / "orientations.csv")
+    assert row["evaluations"] == len(table) == 7
+    assert row["kind"] == table["kind"][0]
+    solid = lu.model("duck", 60)
+    assert row["layered_upright"] == pytest.approx(orientation.layered(solid), abs=1e-6)
+    assert row["gain_folded"] == pytest.approx(
+        row["folded_chosen"] - row["folded_upright"], abs=2e-6
+    )
+    assert not {orientation.CHOSEN_ON} & {*orientation.REPORTED_ON, *orientation.FOLDED_ON}
+
+
+@pytest.mark.slow
+def test_shells_and_appearance_on_a_tiny_solid(tmp_path):
+    for app in (shell.app, appearance.app):
+        run("--model", "duck", "--voxels", 120, "--out", tmp_path, app=app)
+    shells = pd.read_csv(tmp_path / "shell.csv").set_index("what")
+    assert (shells["saved"].dropna() >= 0).all()
+    assert "no thinner than the solid" in shells.loc["shell of 2", "reason"]
+    looks = pd.read_csv(tmp_path / "appearance.csv")
+    assert looks["stage"].tolist() == ["solid", "layered", "folded", "trimmed"]
+
+
+def test_tables_grow_model_by_model(tmp_path):
+    file = tmp_path / "grown.csv"
+    for name, value in (("a", 1), ("b", 2), ("a", 3)):
+        table = joining.joined(pd.DataFrame([{"model": name, "value": value}]), file)
+    assert table["model"].tolist() == ["b", "a"]
+    pd.testing.assert_frame_equal(table, pd.read_csv(file))
+    assert table["value"].tolist() == [2, 3]

@@ -23,7 +23,7 @@ def table():
 
 @pytest.fixture
 def bricks(monkeypatch):
-    """In place of voxelizing and of paths: bricks, higher the more upright; none towards +x."""
+    """In place of solids and paths: bricks, the higher the more upright, none towards +x."""
 
     def fitted(surface, voxels, name, provenance):
         x, _, z = provenance["up"]

@@ -108,6 +108,7 @@ def test_a_shell_of_a_mesh_has_the_count_asked_for():
         lu.voxelize(trimesh.creation.box((9, 9, 1)), 81, shell=2)
 
 
+@pytest.mark.slow
 def test_the_command(tmp_path):
     assert (
         cli.run(["voxelize", "duck", "--voxels", "120", "--shell", "1", "--out", str(tmp_path)])

@@ -27,35 +27,37 @@ def orient(
     from ..orientation import rank_orientations
     from ..storage import write_whole
 
-    weights = {}
-    for given in weight or []:
-        name, _, value = given.partition("=")
-        try:
-            weights[name] = float(value)
-        except ValueError:
-            raise ValueError(f"a weight is given as NAME=VALUE, got {given!r}") from None
     with Reporter(evaluations + finalists, console()) as reporter:
         table = rank_orientations(
             readable(model),
             voxels,
             evaluations=evaluations,
             finalists=finalists,
-            weights=weights,
+            weights=_weights(weight or []),
             seed=seed,
             progress=reporter,
         )
-    stem = out / Path(model).stem
+    stem = out / f"{Path(model).stem}.orientations"
     out.mkdir(parents=True, exist_ok=True)
-    csv = stem.with_name(f"{stem.name}.orientations.csv")
-    write_whole(csv, table.to_csv(index=False))
-    written = [csv]
-    if (table["reason"] == "ok").any():
-        picture = stem.with_name(f"{stem.name}.orientations.png")
+    written = [write_whole(stem.with_name(f"{stem.name}.csv"), table.to_csv(index=False))]
+    best = table.iloc[0]
+    if best["reason"] == "ok":
+        picture = stem.with_name(f"{stem.name}.png")
         written.append(draw.save(draw.orientations(table), picture))
-        best = table.iloc[0]
         up = ", ".join(f"{best[f'up_{axis}']:.3f}" for axis in "xyz")
         typer.echo(f"best: up ({up}), {best['kind']}, score {best['score']:.3f}")
     for file in written:
         typer.echo(f"written: {file}")
-    failed = table[table["reason"] != "ok"]
-    end([f"no orientation has a solid: {failed['reason'].iloc[0]}"] if len(written) == 1 else [])
+    end([] if best["reason"] == "ok" else [f"no orientation has a solid: {best['reason']}"])
+
+
+def _weights(given: list[str]) -> dict[str, float]:
+    """Weights given as NAME=VALUE."""
+    weights = {}
+    for text in given:
+        name, _, value = text.partition("=")
+        try:
+            weights[name] = float(value)
+        except ValueError:
+            raise ValueError(f"a weight is given as NAME=VALUE, got {text!r}") from None
+    return weights

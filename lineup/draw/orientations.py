@@ -113,22 +113,28 @@ def _trade(figure: Figure, axes: Axes, table: pd.DataFrame) -> None:
         )  # fmt: skip
     best = table.iloc[0]
     axes.plot(best["layered"], best["iou"], "o", ms=15, mfc="none", mec=_BEST, mew=2.2)
-    folded = table["folded"].dropna()
-    axes.set_xlim(table["layered"].min() - 0.005, max(table["layered"].max(), folded.max()) + 0.005)
-    axes.set_xlabel("coverage: layered path; arrow: folded", fontsize=10, color=INK)
-    axes.set_ylabel("IoU with the mesh", fontsize=10, color=INK)
-    axes.grid(color=PALE, lw=0.6)
-    axes.set_axisbelow(True)
-    axes.spines[["top", "right"]].set_visible(False)
+    axes.set_title(
+        f"{len(table)} orientations, {len(front)} on the Pareto front (ringed); red: the best",
+        fontsize=11,
+        color=INK,
+    )
+    _frame(axes, table)
+    if shown is not None:
+        bar = figure.colorbar(shown, cax=figure.add_axes((0.92, 0.12, 0.012, 0.76)))
+        bar.set_label(f"MSCs, {_MOST_MSCS} or more in one colour", fontsize=9)
+
+
+def _frame(axes: Axes, table: pd.DataFrame) -> None:
     marks = [
         Line2D([], [], ls="", marker=mark, color=GREY, ms=8, label=kind)
         for kind, mark in _MARKS.items()
         if (table["kind"] == kind).any()
     ]
     axes.legend(handles=marks, loc="best", frameon=False, fontsize=9)
-    n_front = len(front)
-    title = f"{len(table)} orientations, {n_front} on the Pareto front (ringed); red: the best"
-    axes.set_title(title, fontsize=11, color=INK)
-    if shown is not None:
-        bar = figure.colorbar(shown, cax=figure.add_axes((0.92, 0.12, 0.012, 0.76)))
-        bar.set_label(f"MSCs, {_MOST_MSCS} or more in one colour", fontsize=9)
+    most = float(np.nanmax(table[["layered", "folded"]].to_numpy(float)))
+    axes.set_xlim(float(table["layered"].min()) - 0.005, most + 0.005)
+    axes.set_xlabel("coverage: layered path; arrow: folded", fontsize=10, color=INK)
+    axes.set_ylabel("IoU with the mesh", fontsize=10, color=INK)
+    axes.grid(color=PALE, lw=0.6)
+    axes.set_axisbelow(True)
+    axes.spines[["top", "right"]].set_visible(False)
