@@ -51,11 +51,10 @@ def dots(
     """
     values = _checked(table, log)
     names = [str(name) for name in table.index]
-    left = 0.35 + _LETTER * max(map(len, names))
+    left = (0.35 + _LETTER * max(map(len, names))) / _WIDTH
     height = _HEAD + _FOOT + _ROW * len(names)
     figure = page(_WIDTH, height)
-    place = (left / _WIDTH, _FOOT / height, 0.97 - left / _WIDTH, _ROW * len(names) / height)
-    axes = figure.add_axes(place)
+    axes = figure.add_axes((left, _FOOT / height, 0.97 - left, _ROW * len(names) / height))
     if log:
         axes.set_xscale("log")
         axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.10g}"))
