@@ -18,6 +18,7 @@ _COLOURS = (
     *("#6b7a8f", "#a3a82b"),
 )
 _WIDTH, _HEIGHT = 8.6, 5.0  # inches
+_DASH = 6.0  # points; lines at one height take turns, so that each is seen
 _ROOM = 0.72  # of the distance between two texts on the axis, for the series side by side
 
 
@@ -87,13 +88,17 @@ def _colour(k: int) -> str:
 
 def _lines(axes: Axes, series: dict[str, pd.DataFrame], plot: Plot) -> bool:
     """Draw a line for each colour; whether any goes through the medians of several rows."""
-    several = False
+    several, n_levels = False, 0
+    n_level = sum(bool(rows[plot.x].isna().any()) for rows in series.values())
     for k, (name, rows) in enumerate(series.items()):
         level = rows[rows[plot.x].isna()]
         rows = rows.dropna(subset=plot.x)
         if len(level):
             height = float(level[plot.y].median())
-            axes.axhline(height, color=_colour(k), linestyle="--", linewidth=1.6, label=name)
+            style = (_DASH * n_levels, (_DASH, _DASH * max(n_level - 1, 1)))
+            axes.axhline(height, color=_colour(k), linestyle=style, linewidth=1.8)
+            axes.plot([], [], "--", color=_colour(k), label=name)
+            n_levels += 1
         if len(rows):
             x, y = rows[plot.x].astype(float), rows[plot.y].astype(float)
             middle = y.groupby(x).median()
