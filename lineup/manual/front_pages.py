@@ -77,11 +77,11 @@ def _difficulty(sheet: Sheet, document: Document, top: float) -> None:
     for k in range(5):
         x = MARGIN + 33 + 7 * k
         full = k < grade["grade"]
-        # A line without length is no dot where pixels are drawn.
+        # Where pixels are drawn a line without length is no dot, nor one that is snapped to them.
         dot = [(x, top + 2.2), (x + 0.01, top + 2.2)]
-        line(sheet, dot, 5, INK)
+        line(sheet, dot, 5, INK, snap=False)
         if not full:
-            line(sheet, dot, 4, "white", zorder=3)
+            line(sheet, dot, 4, "white", zorder=3, snap=False)
     word = WORDS[grade["grade"] - 1]
     say(sheet, MARGIN + 30 + 40, top, f"{word}: {grade['points']} points", 11)
     how = (
