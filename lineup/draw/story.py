@@ -49,7 +49,7 @@ def _shown(motion: Motion, pictures: int) -> tuple[list[tuple[int, FloatArray]],
     None if the motion never comes to the straight line.
     """
     substeps = max(1, (pictures - 1) // max(len(motion), 1))
-    wanted = set(np.linspace(0, substeps * len(motion), pictures).astype(int).tolist())
+    wanted = set(np.rint(np.linspace(0, substeps * len(motion), pictures)).astype(int).tolist())
     shown: list[tuple[int, FloatArray]] = []
     line = None
     for k, pose in enumerate(frames(motion, substeps=substeps)):
