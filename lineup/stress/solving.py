@@ -15,8 +15,8 @@ BALANCED = 1e-9
 """A force or moment that may be left over on a voxel, as a share of the body's weight."""
 
 _STEPS = 200
-_NEAR = 8  # steps of conjugate gradients, which take as long as to factorize anew
-_ENOUGH = 0.03  # of the energy norm of the error; the set of points is not the last one
+_NEAR = 16  # steps of conjugate gradients, which take as long as to factorize anew
+_ENOUGH = 0.3  # of the energy norm of the error; the set of points is not the last one
 _OPEN = 1e-6  # what keeps a step from running away where nothing else holds a part of the body
 _RELATIVE = 1e-9
 _ROUNDING = 8 * float(np.finfo(float).eps)
