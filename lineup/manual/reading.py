@@ -45,7 +45,8 @@ def read_manual(file: str | os.PathLike[str]) -> Folding:
     -------
     Folding
         Its motion unfolds the path; played backwards it is what the hand does. Only `certify`
-        says that it is free of collisions.
+        says that it is free of collisions. A motion for slotted joints comes back as one for
+        free joints, for the rows have no words for two moves that are one for the hand.
 
     Raises
     ------
