@@ -18,6 +18,7 @@ include_patterns = [
     "data/README.md",
     "experiments/FORMAT.md",
     "experiments/results/*.md",
+    "experiments/results/sweeps/*.md",
 ]
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]
 
@@ -37,7 +38,7 @@ html_static_path: list[str] = []
 def titled(_app: Sphinx, page: str, source: list[str]) -> None:
     """Give the tables of results, which are bare, the title that a page must have."""
     folder, _, name = page.rpartition("/")
-    if folder == "experiments/results" and not source[0].startswith("#"):
+    if folder.startswith("experiments/results") and not source[0].startswith("#"):
         source[0] = f"# {name.replace('_', ' ').capitalize()}\n\n{source[0]}"
 
 
