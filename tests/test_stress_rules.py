@@ -5,8 +5,9 @@ from itertools import permutations, product
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
+from scipy.optimize import minimize_scalar
 from scipy.sparse.linalg import splu
 from strands import LEANING, boustrophedon, level, path, walk
 
@@ -206,11 +207,32 @@ def test_factors_that_serve_for_several_steps_lead_to_the_same(bonding, monkeypa
     again = lu.strength(shape, bonding=bonding)
     assert often.table.equals(again.table)
     monkeypatch.setattr(
-        solving, "_near", lambda matrix, load, _: (splu(matrix.tocsc()).solve(load), True)
+        solving,
+        "_near",
+        lambda held, load, _: (splu(solving.whole(held).tocsc()).solve(load), True),
     )
     plain = lu.strength(shape, bonding=bonding)
     a, b = (r.table["tension_pa"].dropna().to_numpy() for r in (often, plain))
     np.testing.assert_allclose(a, b, atol=1e-6 * a.max())
+
+
+@given(st.integers(0, 10**6), st.integers(0, 12))
+def test_a_step_goes_as_far_as_the_energy_falls(seed, points):
+    """Against a search along the step; half of the points are just open or just closed."""
+    rng = np.random.default_rng(seed)
+    gap, lift = rng.normal(size=(2, points)).round(1)
+    gap[: points // 2] = 0
+    share, own = rng.uniform(0.1, 9, points), rng.uniform(0.1, 2)
+    pull = rng.uniform(0.1, 5) - float((share * np.minimum(gap, 0)) @ lift)
+    assume(pull > 0)
+
+    def energy(t):
+        return own * t**2 / 2 + float(share @ np.minimum(gap + t * lift, 0) ** 2) / 2
+
+    start = -pull - float((share * np.minimum(gap, 0)) @ lift)
+    far = minimize_scalar(lambda t: energy(t) + start * t, bounds=(0, 100), method="bounded")
+    found = solving.length(pull, own, gap, lift, share)
+    assert energy(found) + start * found <= far.fun + 1e-9
 
 
 def test_no_end_is_an_error_and_not_a_result(monkeypatch):

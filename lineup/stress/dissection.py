@@ -25,9 +25,8 @@ Matrix = Any  # scipy.sparse.csr_matrix, which is generic in some versions only
 Solver = Callable[[FloatArray], FloatArray]
 Indices = NDArray[np.int64]
 
-Strip = tuple[slice, FloatArray, FloatArray, Indices]
-"""Up to `TILE` columns of the factor: their places, the inverse of the triangle there, the rows
-below it and the places of these."""
+Strip = tuple[FloatArray, FloatArray]
+"""Up to `TILE` columns of the factor: the inverse of the triangle there, and the rows below it."""
 
 SMALL = 24
 """Voxels that are cut no further; at least 8."""
@@ -93,28 +92,58 @@ def factorized(cut: Parts, matrix: Matrix) -> Solver:
     unknown = _unknowns(cut.order)
     place = np.argsort(unknown)
     rows = matrix[unknown].tocsr()
-    strips: list[Strip] = []
+    places = [
+        _unknowns(np.concatenate([np.arange(part.start, part.stop), part.border]))
+        for part in cut.parts
+    ]
+    where, size = _where(cut.parts, places)
+    values, beyond = np.empty(size), np.concatenate(places)
+    strips = [_strip(values, *row) for row in where[:, :3].tolist()]
     left: dict[int, FloatArray] = {}
+    done = 0
     for number, part in enumerate(cut.parts):
-        places = _unknowns(np.concatenate([np.arange(part.start, part.stop), part.border]))
-        front = _front(part, places, rows, place)
+        front = _front(part, places[number], rows, place)
         for k in part.below:
-            at = np.searchsorted(places, _unknowns(cut.parts[k].border))
+            at = np.searchsorted(places[number], _unknowns(cut.parts[k].border))
             add_lower(front, left.pop(k), at)
         own = 6 * (part.stop - part.start)
-        strips += _eliminated(front, places, own)
+        count = -(-own // TILE)
+        _eliminate(front, own, strips[done : done + count])
+        done += count
         left[number] = np.ascontiguousarray(front[own:, own:])
 
     def solve(load: FloatArray) -> FloatArray:
         x = load[unknown]
-        for at, inverse, below, beyond in strips:
-            x[at] = inverse @ x[at]
-            x[beyond] -= _times(below, x[at])
-        for at, inverse, below, beyond in reversed(strips):
-            x[at] = (x[at] - _transposed_times(below, x[beyond])) @ inverse
+        solve_in_place(x, values, where, beyond)
         return x[place]
 
     return solve
+
+
+def _where(parts: tuple[Part, ...], places: list[Indices]) -> tuple[Indices, int]:
+    """Where each strip is among the values of the factor, and how many these are.
+
+    A row (5) each: its first value, its columns, the rows below, its first place, and where in all
+    `places` those of the rows below begin.
+    """
+    found: list[tuple[int, int, int, int, int]] = []
+    at = before = 0
+    for part, those in zip(parts, places, strict=True):
+        own = 6 * (part.stop - part.start)
+        for start, stop in pairwise([*range(0, own, TILE), own]):
+            columns, below = stop - start, len(those) - stop
+            found.append((at, columns, below, 6 * part.start + start, before + stop))
+            at += columns * (columns + below)
+        before += len(those)
+    return np.array(found), at
+
+
+@kernel
+def _strip(values: FloatArray, at: int, columns: int, below: int) -> Strip:
+    """The two matrices of a strip, which are places in `values`."""
+    middle = at + columns * columns
+    inverse = values[at:middle].reshape(columns, columns)
+    return inverse, values[middle : middle + columns * below].reshape(below, columns)
 
 
 def _cut(
@@ -169,39 +198,31 @@ def _front(part: Part, places: Indices, rows: Matrix, place: Indices) -> FloatAr
     return front
 
 
-def _eliminated(front: FloatArray, places: Indices, own: int) -> list[Strip]:
-    """The factor's columns of the first `own` unknowns; what they leave is written in the rest."""
-    strips: list[Strip] = []
+def _eliminate(front: FloatArray, own: int, strips: list[Strip]) -> None:
+    """Write the factor's columns of the first `own` unknowns; the rest of `front` is what they
+    leave."""
     size = len(front)
-    for start, stop in pairwise([*range(0, own, TILE), *range(own, size, TILE), size]):
+    for number, (start, stop) in enumerate(
+        pairwise([*range(0, own, TILE), *range(own, size, TILE), size])
+    ):
         column = np.ascontiguousarray(front[start:, start:stop])
-        for k, (_, _, below, _) in enumerate(strips):
+        for k, (_, below) in enumerate(strips[:number]):
             known = below[start - min((k + 1) * TILE, own) :]
             column -= _times(known, known[: stop - start].T)
         if start < own:
-            inverse = np.linalg.inv(np.linalg.cholesky(column[: stop - start]))
-            below = _times(column[stop - start :], inverse.T)
-            at = slice(int(places[start]), int(places[start]) + stop - start)
-            strips.append((at, inverse, below, places[stop:]))
+            inverse, below = strips[number]
+            inverse[:] = np.linalg.inv(np.linalg.cholesky(column[: stop - start]))
+            below[:] = _times(column[stop - start :], inverse.T)
         else:
             front[start:, start:stop] = column
-    return strips
 
 
 def _times(a: FloatArray, b: FloatArray) -> FloatArray:
     """a @ b, tile by tile."""
     whole = len(a) - len(a) % TILE
-    product = np.empty((len(a), *b.shape[1:]))
+    product = np.empty((len(a), b.shape[1]))
     np.matmul(_tiles(a[:whole]), b, out=_tiles(product[:whole]))
     product[whole:] = a[whole:] @ b
-    return product
-
-
-def _transposed_times(a: FloatArray, x: FloatArray) -> FloatArray:
-    """x @ a, tile by tile."""
-    whole = len(a) - len(a) % TILE
-    by_tile = x[:whole].reshape(-1, 1, TILE) @ _tiles(a[:whole])
-    product: FloatArray = by_tile.sum(axis=(0, 1)) + x[whole:] @ a[whole:]
     return product
 
 
@@ -216,3 +237,33 @@ def add_lower(front: FloatArray, left: FloatArray, at: Indices) -> None:
     for i in range(len(at)):
         for j in range(i + 1):
             front[at[i], at[j]] += left[i, j]
+
+
+@kernel
+def solve_in_place(x: FloatArray, values: FloatArray, where: Indices, beyond: Indices) -> None:
+    """Solve for a load `x`, in the order of elimination, with the strips that `where` finds."""
+    for at, columns, below, first, after in where:
+        own, rest = x[first : first + columns], beyond[after : after + below]
+        inverse, rows = _strip(values, at, columns, below)
+        known = np.zeros(columns)
+        for i in range(columns):
+            for j in range(i + 1):
+                known[i] += inverse[i, j] * own[j]
+        own[:] = known
+        for i in range(below):
+            total = 0.0
+            for j in range(columns):
+                total += rows[i, j] * known[j]
+            x[rest[i]] -= total
+    for at, columns, below, first, after in where[::-1]:
+        own, rest = x[first : first + columns], beyond[after : after + below]
+        inverse, rows = _strip(values, at, columns, below)
+        known = own.copy()
+        for i in range(below):
+            factor = x[rest[i]]
+            for j in range(columns):
+                known[j] -= rows[i, j] * factor
+        own[:] = 0
+        for i in range(columns):
+            for j in range(i + 1):
+                own[j] += inverse[i, j] * known[i]

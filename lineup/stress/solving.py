@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 from scipy.linalg import LinAlgError
-from scipy.optimize import brentq
 from scipy.sparse.linalg import splu
 
-from ..grid import BoolArray, FloatArray, IntArray
+from .._record import record
+from ..grid import FloatArray, IntArray
 from .dissection import Matrix, Parts, Solver, dissected, factorized
 
 BALANCED = 1e-9
@@ -18,8 +18,16 @@ _STEPS = 200
 _NEAR = 16  # steps of conjugate gradients, which take as long as to factorize anew
 _ENOUGH = 0.3  # of the energy norm of the error; the set of points is not the last one
 _OPEN = 1e-6  # what keeps a step from running away where nothing else holds a part of the body
-_RELATIVE = 1e-9
 _ROUNDING = 8 * float(np.finfo(float).eps)
+
+
+@record
+class Held:
+    """A stiffness (6n, 6n), and springs (m,) at the points of contact (m, 6n)."""
+
+    stiffness: Matrix
+    contact: Matrix
+    springs: FloatArray
 
 
 def balanced(
@@ -40,13 +48,14 @@ def balanced(
     u = np.zeros(len(load))
     gap, left = contact @ u, load
     closed = np.ones(len(share), bool)
-    held = _held(stiffness, contact, share, closed)
-    cut = dissected(voxels, held)
-    solve, fresh = solver(held, cut), True
+    held = Held(stiffness, contact, share)
+    cut = dissected(voxels, whole(held))
+    solve, fresh = solver(whole(held), cut), True
     sizes = abs(stiffness)
     for _ in range(_STEPS):
         step, enough = (solve(left), True) if fresh else _near(held, left, solve)
-        u = u + _length(float(step @ left), step, stiffness, gap, contact @ step, share) * step
+        lift, own = contact @ step, float(step @ (stiffness @ step))
+        u = u + length(float(step @ left), own, gap, lift, share) * step
         gap = contact @ u
         left = load - stiffness @ u - contact.T @ (share * np.minimum(gap, 0))
         limit = max(BALANCED * len(voxels), _ROUNDING * float((sizes @ np.abs(u)).max()))
@@ -54,16 +63,16 @@ def balanced(
             return u, share * np.maximum(-gap, 0)
         before, closed = closed, gap < 0
         same = np.array_equal(closed, before)
-        if not same:
-            held, fresh = _held(stiffness, contact, share, closed), False
+        held = Held(stiffness, contact, share * np.where(closed, 1.0, _OPEN))
+        fresh = fresh and same
         if not fresh and (same or not enough):
-            solve, fresh = solver(held, cut), True
+            solve, fresh = solver(whole(held), cut), True
     raise ArithmeticError(
         f"no balance found in {_STEPS} steps; {np.abs(left).max():.1e} voxel weights are left over"
     )
 
 
-def _near(matrix: Matrix, load: FloatArray, solve: Solver) -> tuple[FloatArray, bool]:
+def _near(held: Held, load: FloatArray, solve: Solver) -> tuple[FloatArray, bool]:
     """A step towards the solution of a system by what solves a like one, and if it is enough.
 
     Conjugate gradients, which the factors of a like system lead there quickly. It is a step
@@ -73,7 +82,7 @@ def _near(matrix: Matrix, load: FloatArray, solve: Solver) -> tuple[FloatArray, 
     way = towards = solve(left)
     start = pull = float(left @ towards)
     for _ in range(_NEAR):
-        pushed = matrix @ way
+        pushed = held.stiffness @ way + held.contact.T @ (held.springs * (held.contact @ way))
         share = pull / float(way @ pushed)
         found = found + share * way
         left = left - share * pushed
@@ -85,36 +94,27 @@ def _near(matrix: Matrix, load: FloatArray, solve: Solver) -> tuple[FloatArray, 
     return found, False
 
 
-def _held(stiffness: Matrix, contact: Matrix, share: FloatArray, closed: BoolArray) -> Matrix:
-    """The stiffness with that of the points that push."""
-    springs = sparse.diags(share * np.where(closed, 1.0, _OPEN))
-    return stiffness + contact.T @ springs @ contact
+def whole(held: Held) -> Matrix:
+    """The stiffness with that of the springs."""
+    return held.stiffness + held.contact.T @ sparse.diags(held.springs) @ held.contact
 
 
-def _length(
-    pull: float,
-    step: FloatArray,
-    stiffness: Matrix,
-    gap: FloatArray,
-    lift: FloatArray,
-    share: FloatArray,
-) -> float:
-    """How far along a step the energy falls: 1, or less or more where points lift or touch."""
-    own = float(step @ (stiffness @ step))
-    before = np.minimum(gap, 0)
+def length(pull: float, own: float, gap: FloatArray, lift: FloatArray, share: FloatArray) -> float:
+    """How far along a step the energy is least: 1, or less or more where points lift or touch.
 
-    def slope(t: float) -> float:
-        change = share * (np.minimum(gap + t * lift, 0) - before)
-        return t * own - pull + float(change @ lift)
-
-    if abs(slope(1.0)) <= _RELATIVE * abs(pull):
-        return 1.0
-    end = 1.0
-    while slope(end) < 0:
-        end *= 2
-        if end > 2**40:
-            return 1.0
-    return float(brentq(slope, 0.0, end, xtol=1e-14, rtol=1e-12))
+    The slope of the energy is -pull at first. It rises by `own` a step, and by as much as the
+    points push that are closed, so it is made of straight pieces.
+    """
+    push = share * lift**2
+    rise = own + float(push[(gap < 0) | ((gap == 0) & (lift < 0))].sum())
+    turn = np.divide(-gap, lift, out=np.zeros(len(gap)), where=lift != 0)
+    order = np.argsort(turn, kind="stable")
+    order = order[turn[order] > 0]
+    turns = np.concatenate([[0.0], turn[order]])
+    rises = rise + np.concatenate([[0.0], np.cumsum((-np.sign(lift) * push)[order])])
+    slopes = np.concatenate([[0.0], np.cumsum(rises[:-1] * np.diff(turns))]) - pull
+    last = max(int(np.searchsorted(slopes, 0.0)) - 1, 0)
+    return float(turns[last] - slopes[last] / rises[last]) if rises[last] > 0 else 1.0
 
 
 def solver(matrix: Matrix, cut: Parts) -> Solver:
