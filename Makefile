@@ -6,7 +6,7 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
 SWEEPS := orientations resolutions paths trimming motions bonding
-EXTRAS := notebooks,exact,cluster,site,test
+EXTRAS := notebooks,exact,cluster,site,bench,test
 WANTED := --constraint constraints.txt --editable ".[$(EXTRAS)]"
 
 # Without a display the window must come from EGL, or VTK crashes at the first picture.
@@ -36,9 +36,9 @@ notebooks: $(STAMP)  ## Execute every notebook again from its .py half
 	sed -i.bak '/"application\/vnd.jupyter.widget-view+json": {/,/},/d' notebooks/*.ipynb
 	rm notebooks/*.ipynb.bak
 
-benchmarks: $(STAMP)  ## Our paths beside those of other tools, and how their time grows: results/
-	$(BIN)/python benchmarks/paths.py peers
-	$(BIN)/python benchmarks/paths.py growth
+bench: $(STAMP)  ## Each stage beside other tools, and how its time grows: results/benchmarks.md, stages.md
+	$(BIN)/python benchmarks/ratios.py
+	$(BIN)/python benchmarks/stages.py
 
 site: $(STAMP)  ## The documentation: site/html/docs/index.html
 	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going -c docs . site/html
@@ -70,4 +70,4 @@ $(STAMP): pyproject.toml constraints.txt
 	@$(BIN)/python -c 'import lineup as lu; lu.lineup(["duck"], blocks=40)'
 	@touch $@
 
-.PHONY: reproduce test lint lab notebooks benchmarks experiments site setup clean help
+.PHONY: reproduce test lint lab notebooks bench experiments site setup clean help

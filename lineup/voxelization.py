@@ -24,7 +24,7 @@ from .shells import Thickness
 from .shells import shell as hollowed
 from .solid import VoxelSolid, check_occupancy
 
-MAX_VOXELS = 200_000
+MAX_VOXELS = 2_000_000
 TOLERANCE = 0.02
 """How far from its target the count of a solid may be, as a share."""
 
@@ -87,7 +87,7 @@ def voxelize(
         If there is no such file.
     ValueError
         If the mesh is empty, flat, not finite or of an unknown type, if `voxels` is not an integer
-        from 1 to 200,000, or if `up` is no direction.
+        from 1 to 2,000,000, or if `up` is no direction.
 
     Examples
     --------

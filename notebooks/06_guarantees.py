@@ -66,7 +66,7 @@ for solid in (arch, lu.VoxelSolid(np.ones((8, 9, 8), bool)), cylinder):
 # %% [markdown]
 # ## In O(n²) time
 #
-# Doubling the voxels may take four times as long, says the theorem. `make benchmarks` runs
+# Doubling the voxels may take four times as long, says the theorem. `make bench` runs
 # Algorithm 3 on balls of growing size and fits the exponent: it is near 1, so in practice the
 # time doubles.
 

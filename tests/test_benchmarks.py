@@ -1,13 +1,16 @@
 """The benchmarks run, on tiny solids, and what they tell is true."""
 
 import sys
+import time
 from pathlib import Path
 
 import networkx as nx
 import numpy as np
 import pandas as pd
 import pytest
+from hypothesis import given
 from oracles import longest_path, voxel_graph
+from polycubes import polycubes
 from typer.testing import CliRunner
 
 import lineup as lu
@@ -20,10 +23,13 @@ import folding
 import joining
 import motion
 import orientation
+import others
 import paths
 import peers
+import ratios
 import shell
 import slots
+import stages
 import strength
 
 
@@ -243,3 +249,60 @@ def test_tables_grow_model_by_model(tmp_path):
     assert table["model"].tolist() == ["b", "a"]
     pd.testing.assert_frame_equal(table, pd.read_csv(file))
     assert table["value"].tolist() == [2, 3]
+
+
+ALL = list(dict.fromkeys(contest.stage for contest in ratios.CONTESTS))
+
+
+@pytest.mark.parametrize(
+    "stages", [["bound", "certification"], pytest.param(ALL, marks=pytest.mark.slow)]
+)
+def test_ratios_on_tiny_solids(stages, tmp_path):
+    chosen = [word for stage in stages for word in ("--stage", stage)]
+    run("--scale", 0.02, "--repeats", 2, "--out", tmp_path, *chosen, app=ratios.app)
+    table = pd.read_csv(tmp_path / "benchmarks.csv")
+    assert len(table) == sum(contest.stage in stages for contest in ratios.CONTESTS)
+    ran = table[table["runs"] > 0]
+    assert set(table["peer"]) - set(ran["peer"]) <= {"LKH"}  # of another licence
+    assert (ran["least"] <= ran["most"]).all()
+    assert ran["theirs"].str.len().gt(0).all()
+    bound = ran[ran["stage"] == "bound"].iloc[0]
+    assert bound["ours"] == bound["theirs"]
+    page = (tmp_path / "benchmarks.md").read_text()
+    assert "numpy 2" in page
+    assert (tmp_path / "benchmarks.png").stat().st_size > 1000
+
+
+def test_a_side_that_does_a_share_of_the_job_is_scaled():
+    _, seconds = ratios.timed(ratios.Side(lambda: str(time.sleep(0.02)), share=0.1))
+    assert seconds >= 0.2
+
+
+def test_stages_on_tiny_solids_stop_where_they_are_told(tmp_path):
+    run("--voxels", 40, "--voxels", 80, "--limit", 1e-9, "--out", tmp_path, app=stages.app)
+    table = pd.read_csv(tmp_path / "stages.csv")
+    assert set(table["voxels"]) == {40}
+    assert {"voxelize", "layered path", "fold", "certify", "strength"} <= set(table["method"])
+    assert (tmp_path / "stages.png").stat().st_size > 1000
+
+
+@given(polycubes())
+def test_the_flow_of_networkx_is_the_bound(occupancy):
+    solid = lu.VoxelSolid(occupancy)
+    assert others.flow_bound(solid) == lu.path_bound(solid)
+
+
+def test_elements_shorten_a_column_under_its_own_weight():
+    column = np.array([(x, y, z) for x in range(2) for y in range(2) for z in range(12)])
+    sag = others.by_elements(column, 10.0)
+    assert sag == pytest.approx(1e3 * 1130 * 9.81 * 0.12**2 / 2 / 2.6e9, rel=0.05)
+
+
+def test_peers_of_the_judge_see_bars_that_meet():
+    apart = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], float)
+    near = apart.copy()
+    near[3] = (0.5, 0.5, 0)
+    assert others.sampled_clearance(apart) == pytest.approx(1)
+    assert others.sampled_clearance(near) == pytest.approx(0.5, abs=0.01)
+    assert not others.ccd_finds_contact(apart, apart, 0.98)
+    assert others.ccd_finds_contact(apart, near, 0.98)
