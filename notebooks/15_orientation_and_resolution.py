@@ -58,8 +58,7 @@ draw.orientations(table)
 #
 # The best of many always looks better than it is. So the choice below was made with one seed, and
 # path and folding were then computed anew with others. `benchmarks/orientation.py` makes the
-# table, here of small solids (see its column `voxels`); `effort` is upright with as many tries as
-# the whole search had.
+# table, on meshes of 500 voxels; `effort` is upright with as many tries as the whole search had.
 
 # %%
 gain = pd.read_csv(f"{results}/orientations_gain.csv")
@@ -84,11 +83,12 @@ gain[shown].round(3)
 
 # %%
 correlation = gain.set_index("model")["mscs_to_layered"].round(2)
-assert correlation.dropna().between(-1, 1).all()
+assert (correlation < -0.25).sum() == 5
 correlation.to_frame()
 
 # %% [markdown]
-# It is not so on these few models: the sign differs from model to model.
+# It leans that way on five of the six models, far from -1, and the other way on the two-holed
+# torus.
 
 # %% [markdown]
 # ## What is left of the mesh
@@ -138,8 +138,8 @@ draw.solid(lu.mend(hollow.occupancy[:, hollow.occupancy.shape[1] // 2 :]))
 
 # %% [markdown]
 # The duck is cut open. What a shell costs is in the table of `benchmarks/shell.py`: `saved` is
-# the share of voxels taken out, `safety` by how much the loads could grow, `iou` that of the
-# outside.
+# the share of voxels taken out, `safety` by how much the loads could grow (0: it tips over), `iou`
+# that of the outside.
 
 # %%
 shells = pd.read_csv(f"{results}/shell.csv")
