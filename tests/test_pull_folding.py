@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from contracts import check_path
-from hypothesis import assume, given, settings
+from examples import examples
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from oracles import n_us
 from polycubes import polycubes
@@ -38,7 +39,7 @@ def check_pulled(folding, solid):
 
 
 @given(polycubes(80), st.integers(0, 9), st.data())
-@settings(max_examples=10, deadline=None)
+@examples(40)
 def test_a_path_without_us_is_pulled_out_whole_and_trimmed(occupancy, seed, data):
     assume(occupancy.sum() > 1)
     solid = lu.VoxelSolid(occupancy)
@@ -52,7 +53,7 @@ def test_a_path_without_us_is_pulled_out_whole_and_trimmed(occupancy, seed, data
 
 
 @given(polycubes(80), st.integers(0, 9), st.data())
-@settings(max_examples=10, deadline=None)
+@examples(40)
 def test_any_path_that_has_a_way_out_is_pulled_out_and_trimmed(occupancy, seed, data):
     assume(occupancy.sum() > 1)
     solid = lu.VoxelSolid(occupancy)

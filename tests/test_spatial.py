@@ -4,7 +4,8 @@ import networkx as nx
 import numpy as np
 import pytest
 from contracts import check_path
-from hypothesis import assume, given, settings
+from examples import examples
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from oracles import longest_path, voxel_graph
 from polycubes import polycubes
@@ -91,7 +92,7 @@ def annealed(occupancy, seed, rounds=12, proposals=40):
         yield board
 
 
-@settings(max_examples=20, deadline=None)
+@examples(40)
 @given(polycubes(50), st.integers(0, 9))
 def test_the_state_is_what_the_links_say(occupancy, seed):
     assume(occupancy.sum() > 1)
@@ -131,7 +132,7 @@ def sides(corners):
     return list(zip(corners, [*corners[1:], corners[0]], strict=True))
 
 
-@settings(max_examples=30, deadline=None)
+@examples(60)
 @given(polycubes(14))
 def test_the_loops_of_a_solid_are_its_short_cycles(occupancy):
     board = _solids.board_of(lu.VoxelSolid(occupancy), 1.0)
@@ -142,7 +143,7 @@ def test_the_loops_of_a_solid_are_its_short_cycles(occupancy):
     assert np.diff(loops.first).tolist() == by_length.tolist()
 
 
-@settings(max_examples=40, deadline=None)
+@examples(60)
 @given(polycubes(40))
 def test_exits_see_no_voxel_ahead(occupancy):
     board = _solids.board_of(lu.VoxelSolid(occupancy), 1.0)
@@ -155,7 +156,7 @@ def test_exits_see_no_voxel_ahead(occupancy):
 
 
 @pytest.mark.parametrize("method", SMALL)
-@settings(max_examples=40, deadline=None)
+@examples(60)
 @given(polycubes(50), st.integers(0, 3))
 def test_every_polycube_has_a_path(method, occupancy, seed):
     assume(occupancy.sum() > 1)
@@ -236,7 +237,7 @@ def nest_of(occupancy, seed):
     return solid, board, nesting._nest_of(path, solid, board)
 
 
-@settings(max_examples=40, deadline=None)
+@examples(60)
 @given(polycubes(50), st.integers(0, 9))
 def test_every_state_on_the_way_is_nested(occupancy, seed):
     """The judge on the path and a plain twin on everything else, cycles included."""
