@@ -328,7 +328,7 @@ def test_no_pair_of_a_long_chain_is_overlooked(seed):
     after = np.where(turns, before + (1500 * drift).astype(int), 0)
     trial = bent(path, axis, [before, after], straight=False)
     verdict = lu.certify(trial, diameter=1e-3, max_bend_deg=180)
-    poses = lu.frames(trial, substeps=64)
+    poses = lu.frames(trial, substeps=32)
     assert len(path) > 200
     assert "come within" in verdict.reason or verdict.clearance <= 1e-8 + min(
         map(pose_clearance, poses)
