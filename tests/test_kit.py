@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 import lineup as lu
-from lineup import cli
+from lineup import cli, draw
 from lineup.grid import DIRECTIONS, LETTERS
 
 
@@ -14,7 +14,9 @@ from lineup.grid import DIRECTIONS, LETTERS
 def kit(tmp_path_factory):
     """A folder that `lineup kit` filled, and what it said at the end."""
     folder = tmp_path_factory.mktemp("kit")
-    code = cli.run(["kit", "duck", "--blocks", "20", "--out", str(folder)])
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(draw.render, "renderer", lambda: "matplotlib")  # quick for small pictures
+        code = cli.run(["kit", "duck", "--blocks", "20", "--out", str(folder)])
     return folder, code
 
 
