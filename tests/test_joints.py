@@ -185,6 +185,11 @@ def test_half_a_block_is_refused():
         slot_violations(motion(walk("EE"), []))
 
 
+def test_a_move_that_turns_nothing_is_refused():
+    with pytest.raises(ValueError, match="does not turn a bar by 90 degrees"):
+        slot_violations(motion(walk("EEE"), [(Move.PEEL, 1, 2, 0)]))
+
+
 def test_unknown_joints_are_refused():
     with pytest.raises(ValueError, match="unknown joints 'ball'; known: free, slotted"):
         lu.certify(motion(walk("E"), []), joints="ball")
