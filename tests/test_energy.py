@@ -191,7 +191,7 @@ def test_motions_of_layered_paths_keep_what_they_say(occupancy, method):
 
 
 @given(walks, axes, st.sampled_from(["energy", "barrier"]))
-@examples(40)
+@examples(60)
 def test_motions_of_walks_keep_what_they_say(voxels, axis, method):
     options = {"axis": axis} if method == "energy" else {"axes": (axis,)}
     check_bending(lu.unfold(lu.VoxelPath(voxels), method, steps=60, **options))

@@ -265,7 +265,7 @@ def test_where_labels_have_no_gap_a_change_waits_for_new_ones():
 
 
 @given(polycubes(60), st.integers(0, 2**32 - 1))
-@examples(60)
+@examples(80)
 def test_swept_cells_are_those_of_the_point_sets(occupancy, seed):
     if occupancy.sum() < 2:
         return

@@ -43,7 +43,7 @@ def even(start):
     return start[: len(start) - len(start) % 2]
 
 
-@examples(160)
+@examples(240)
 @given(chains(), st.data())
 def test_peels_swings_and_doors_agree_with_sampling(start, data):
     start = even(start)
@@ -53,7 +53,7 @@ def test_peels_swings_and_doors_agree_with_sampling(start, data):
     assert slot_violations(trial).tolist() == [list(row) for row in twisted(trial, 9)]
 
 
-@examples(80)
+@examples(240)
 @given(chains(), st.data())
 def test_tilts_agree_with_sampling(start, data):
     start = even(start)
@@ -81,7 +81,7 @@ def test_pulls_agree_with_sampling(start, by_the_last, value):
     assert slot_violations(trial).tolist() == [list(r) for r in twisted(trial, 40 * len(start))]
 
 
-@examples(80)
+@examples(100)
 @given(turnings())
 def test_bends_agree_with_sampling(trial):
     start = even(trial.start)

@@ -267,7 +267,7 @@ def test_the_box_holds_what_bulges_between_the_poses():
     assert (verdict.ok, verdict.where) == (False, 0)
 
 
-@examples(60)
+@examples(80)
 @given(turnings())
 def test_the_box_agrees_with_sampling(trial):
     verdict = lu.certify(trial, diameter=1e-6, max_bend_deg=180)

@@ -232,7 +232,7 @@ def goes_on_beside(voxels, visits):
     return all(gap == 1 for gap in beside)
 
 
-@examples(160)
+@examples(400)
 @given(polycubes(40), st.data())
 def test_visits_agree_with_flooding(occupancy, data):
     """Any walk in any solid: certified if components nest and are gone back to by Case 2."""

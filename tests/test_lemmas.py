@@ -58,7 +58,7 @@ def taken(voxels):
 
 
 @given(paths())
-@examples(80)
+@examples(140)
 def test_a_lattice_pose_has_clearance_one(pose):
     assert pose_clearance(pose.astype(float)) == 1
 
@@ -125,7 +125,7 @@ def test_a_pull_onto_the_chain_goes_through_it():
 
 
 @given(walks(max_bars=10), st.sampled_from(STEPS))
-@examples(60)
+@examples(80)
 def test_pulls_along_a_free_ray_end_in_a_straight_line(start, exit_step):
     ray = start[-1] + np.outer(np.arange(1, len(start)), exit_step)
     assume(not taken(ray) & taken(start))
@@ -146,7 +146,7 @@ def tilted(bars, towards):
 
 
 @given(walks(max_bars=20), st.integers(0, 5))
-@examples(80)
+@examples(140)
 def test_a_tilt_of_a_monotone_path_brings_no_two_points_nearer(start, against):
     # What is left of a walk without its steps against one direction is monotone, hence simple.
     bars = grid.bar_directions(start)
@@ -265,7 +265,7 @@ def is_free(clearance, bend_deg):
 
 
 @given(rods(sideways=True), st.data())
-@examples(160)
+@examples(220)
 def test_a_peel_is_free_of_collisions_exactly_where_its_box_is(rod, data):
     start, b, d, _ = rod
     pose, row = at_either_end(start, (Move.PEEL, b - 1, b, d), data)

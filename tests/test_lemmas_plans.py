@@ -278,7 +278,7 @@ def moved_at(one, t):
 
 
 @given(moves(), st.floats(0, 1))
-@examples(100)
+@examples(140)
 def test_every_move_reversed_is_a_move_of_its_kind_through_the_same_poses(one, t):
     row = tuple(one.moves[0].tolist())
     after = np.rint(moved_at(one, 1.0)).astype(int)

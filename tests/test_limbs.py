@@ -44,7 +44,7 @@ def is_clear(pose, limb, places):
 
 
 @given(seeds, st.integers(4, 60))
-@examples(100)
+@examples(180)
 def test_a_limb_is_clear_exactly_if_the_judge_says_so(seed, n):
     pose, limbs = random_limbs(seed, n, 30)
     places = np.empty_like(pose.place)

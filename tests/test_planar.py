@@ -56,7 +56,7 @@ def check_path(region, path, start, end):
     assert set(np.abs(np.diff(path)).tolist()) <= {1, region.width}
 
 
-@examples(200)
+@examples(440)
 @given(regions(), st.data())
 def test_small_regions_are_solved_to_the_optimum(region, data):
     start, end = ends_of(data, region)
@@ -68,7 +68,7 @@ def test_small_regions_are_solved_to_the_optimum(region, data):
     assert score == best <= limit
 
 
-@examples(100)
+@examples(160)
 @given(regions(40), st.data())
 def test_blocks_are_those_of_networkx(region, data):
     graph = graph_of(region)
@@ -90,7 +90,7 @@ def test_blocks_are_those_of_networkx(region, data):
     assert all(a[2] == b[1] for a, b in itertools.pairwise(chain))
 
 
-@examples(80)
+@examples(120)
 @given(regions(30), st.integers(0, 9))
 def test_toggles_keep_one_path_and_cycles(region, seed):
     """The change in cycles and weight that each toggle reports, against a recount."""
@@ -228,7 +228,7 @@ ONE_CELL_APART = np.array([[True, False, True]])
 
 
 @pytest.mark.parametrize("method", ["long", "paper"])
-@examples(100)
+@examples(240)
 @given(grown_regions(40), st.data())
 def test_planar_paths_keep_their_bound(method, mask, data):
     start, end = draw_ends(data, mask)

@@ -16,7 +16,7 @@ import lineup as lu
 pytest.importorskip("ortools")
 
 
-@examples(120)
+@examples(240)
 @given(grown_regions(14), st.data())
 def test_exact_paths_are_the_longest_of_all(mask, data):
     start, end = draw_ends(data, mask)

@@ -137,7 +137,7 @@ def test_walks_round_faces_meet_exactly_the_boundary_voxels(mask):
         assert (steps == 1).all() or len(walk) == 1
 
 
-@examples(200)
+@examples(360)
 @given(st.integers(0, 2**32), st.integers(4, 16))
 def test_square_free_factors_exist_where_they_are_found(seed, n_cells):
     rng = np.random.default_rng(seed)

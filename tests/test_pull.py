@@ -64,7 +64,7 @@ def tracks(draw, max_bars=16, max_pulls=8, u_free=False):
     return np.array(track[: n_bars + 1]), word
 
 
-@examples(60)
+@examples(80)
 @given(st.booleans().flatmap(lambda u_free: tracks(u_free=u_free)), st.booleans())
 def test_the_lemma_holds_on_every_track(track, by_first):
     """All pairs of bars at many phases keep what the judge says, and so do all bends."""

@@ -197,7 +197,7 @@ def tail_from(start, end):
 
 
 @given(seeds, st.integers(2, 60), st.integers(2, 5))
-@examples(100)
+@examples(220)
 def test_slotted_plans_are_kept_and_come_back_from_their_motions(seed, n, side):
     rng = np.random.default_rng(seed)
     voxels = even_walk(rng, n, side)

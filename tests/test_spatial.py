@@ -93,7 +93,7 @@ def annealed(occupancy, seed, rounds=12, proposals=40):
         yield board
 
 
-@examples(40)
+@examples(80)
 @given(polycubes(50), st.integers(0, 9))
 def test_the_state_is_what_the_links_say(occupancy, seed):
     assume(occupancy.sum() > 1)
@@ -133,7 +133,7 @@ def sides(corners):
     return list(zip(corners, [*corners[1:], corners[0]], strict=True))
 
 
-@examples(60)
+@examples(120)
 @given(polycubes(14))
 def test_the_loops_of_a_solid_are_its_short_cycles(occupancy):
     board = _solids.board_of(lu.VoxelSolid(occupancy), 1.0)

@@ -141,7 +141,7 @@ def test_the_chain_alone_bears_what_statics_says(seed, length):
 # Balance
 
 
-@examples(48)
+@examples(80)
 @given(
     st.integers(0, 10**6), st.sampled_from(sorted(BONDINGS)), st.sampled_from(["+z", "-y", "+x"])
 )

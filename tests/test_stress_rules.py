@@ -173,7 +173,7 @@ def test_factors_of_parts_solve_the_system(bonding, small, monkeypatch):
     np.testing.assert_allclose(found, expected, rtol=1e-7, atol=1e-9 * np.abs(expected).max())
 
 
-@examples(120)
+@examples(260)
 @given(st.integers(0, 10**6), st.integers(10, 60))
 def test_parts_are_cut_apart(seed, length):
     voxels = walk(seed, length, (5, 4, 5))

@@ -160,7 +160,7 @@ def test_a_folding_of_any_solid_is_trimmed_and_stays_certified(occupancy, data):
 
 
 @pytest.mark.parametrize("layered", [False, True])
-@examples(80)
+@examples(160)
 @given(data=st.data())
 def test_no_voxel_to_keep_is_lost_that_some_way_of_trimming_keeps(layered, data):
     path, solid, keep = data.draw(walks(layered))
@@ -178,7 +178,7 @@ def test_no_voxel_to_keep_is_lost_that_some_way_of_trimming_keeps(layered, data)
         assert n_lost == sum(keep[v] for v in gone)
 
 
-@examples(80)
+@examples(220)
 @given(walks(layered=True))
 def test_one_scan_reaches_all_that_contracting_again_and_again_does(case):
     path, _, keep = case

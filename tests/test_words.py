@@ -58,7 +58,7 @@ def told(voxels):
 
 
 @given(paths())
-@examples(80)
+@examples(140)
 def test_a_path_comes_back(voxels):
     voxels = even(voxels)
     word = lu.joint_word(voxels)
@@ -69,7 +69,7 @@ def test_a_path_comes_back(voxels):
     assert len(word) == len(voxels)
 
 
-@examples(120)
+@examples(400)
 @given(words())
 def test_a_word_comes_back_but_for_the_roll_of_its_frame(word):
     again = lu.joint_word(lu.forward(word))
@@ -80,7 +80,7 @@ def test_a_word_comes_back_but_for_the_roll_of_its_frame(word):
 
 
 @given(paths(), st.sampled_from(ROTATIONS), st.lists(st.integers(-50, 50), min_size=3, max_size=3))
-@examples(80)
+@examples(160)
 def test_a_pose_turned_as_a_whole_has_the_same_letters(voxels, turn, shift):
     voxels = even(voxels)
     word, turned = lu.joint_word(voxels), lu.joint_word(voxels @ turn.T + shift)
@@ -90,7 +90,7 @@ def test_a_pose_turned_as_a_whole_has_the_same_letters(voxels, turn, shift):
 
 
 @given(paths())
-@examples(80)
+@examples(160)
 def test_a_mirrored_pose_swaps_z_and_nothing_else(voxels):
     voxels = even(voxels)
     letters = lu.joint_word(voxels * (1, -1, 1)).letters
