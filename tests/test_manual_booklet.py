@@ -153,7 +153,7 @@ def test_hinges_that_bend_in_a_manner_of_their_own_are_told_of_on_plan_and_in_wo
         letters = next(text for text in texts if re.search(r"\d  [ENUWSD-]", text))
         for sign, manner, what in (
             ("*", "straighten", "straighten the hinge"),
-            ("+", "hinge first", "hinge first"),
+            ("+", "hinge first", "bend the hinge first"),
         ):
             blocks = [r.block for r in document.rows if (r.step, r.manner) == (row.step, manner)]
             listed = re.findall(rf"Blocks? ([\d, ]+): {what}", said)

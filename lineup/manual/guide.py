@@ -197,8 +197,8 @@ def _reading(sheet: Sheet, top: float) -> None:
         "its hinge N;\n     block 12, W and U; block 13, S and U. A - stands for what another step "
         "does.",
         "5.  Signs, on plans and letters, are where the slots let a hinge not turn from side to "
-        "side.\n     * Straighten it out of its piece, then press it into the slot on the side of "
-        "its letter.\n     + Bend the hinge first, to its letter, while its piece is still in line "
+        "side.\n     * Straighten it out of its piece, then press it into the slot of its letter."
+        "\n     + Bend the hinge first, to its letter, while its piece is still in line "
         "with the loose end. Then bend\n        the piece; hinge and loose end go on pointing as "
         "they did.",
         "6.  Do the check at the foot of the page, and tick the step on the list.",

@@ -31,10 +31,8 @@ WAYS = {
 """Directions in words, by letter."""
 
 SAID = {
-    "*": "straighten the hinge out of its piece first, then press it into the slot on the side of "
-    "its letter.",
-    "+": "hinge first; bend it to its letter while its piece is still in line with the loose end, "
-    "then bend the piece.",
+    "*": "straighten the hinge out of its piece first, then press it into the slot of its letter.",
+    "+": "bend the hinge first, its piece still in line with the loose end; then bend the piece.",
 }
 """What the signs ask for, in words."""
 
