@@ -216,6 +216,13 @@ def test_operation_3_takes_a_free_cell_for_another():
     assert not nest.links[2, 0]
 
 
+def test_no_operation_joins_a_cycle_with_itself():
+    """The middle square of a ring of 2 by 4 cells has links of it on two sides."""
+    nest = zhang_liu.Nest(linked(BOX, [(0, 0), (3, 0), (3, 1), (0, 1)]))
+    assert not nest.merge_a_leaf()
+    assert sizes(nest) == [8, 72]
+
+
 def test_the_tree_says_which_cycle_is_around_which():
     def box(low, high):
         return [(low, low), (high, low), (high, high), (low, high)]
