@@ -28,7 +28,7 @@ from lineup.storage import write_whole
 ROOT = Path(__file__).parents[1]
 LIST = Path(__file__).with_name("mutants.yaml")
 PLAIN = "def kernel(function):\n    return function\n\n\npart = kernel\n"
-SECONDS = 600
+SECONDS = 300
 """Of one core; a run that takes more is stopped and has found nothing."""
 
 CAUGHT, SURVIVED, NOT_RUN = "caught", "survived", "did not run"
