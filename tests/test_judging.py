@@ -118,6 +118,11 @@ FAULTS = {
         0,
         "come within 0, less than the diameter 0.999",
     ),
+    "peel into what it carries": (
+        one("EESWW", (Move.PEEL, 0, 1, NORTH)),
+        0,
+        "bars 0 and 3 come within 0,",
+    ),
     "rod tip rises past a voxel": (
         motion(ROD_TIP_RISES, [(Move.PEEL, 7, 8, UP)]),
         0,
