@@ -20,11 +20,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import grid
-from .kinematics import QUARTER, Move, frames, moved
+from ._jit import kernel, part
+from .kinematics import QUARTER, TURNS, Move, after, moved
 from .solid import Motion
 
 JOINTS = ("free", "slotted")
 """Joint models that `certify` judges by: the paper's five axes, or the slots of Figure 16."""
+
+_PEEL, _SWING, _DOOR = (int(kind) for kind in TURNS)
 
 _GENERIC = (0.37, 0.61)  # moments of a move, none at which planes are square by chance
 _SQUARE = 1e-6
@@ -68,29 +71,126 @@ def slot_violations(motion: Motion) -> grid.IntArray:
     """
     if len(motion.start) % 2:
         raise ValueError(f"a chain of blocks has an even number of joints, got {len(motion.start)}")
-    rows = [
-        (k, bar)
-        for k, ((pose, _), move) in enumerate(
-            zip(pairwise(frames(motion)), motion.moves, strict=True)
-        )
-        for bar in _twisted(pose, move, motion)
-    ]
+    rows: list[tuple[int, int]] = []
+    pose, k = motion.start.astype(np.float64), 0
+    while k < len(motion):
+        move = motion.moves[k]
+        if move[0] in TURNS:
+            bars = grid.bar_directions(np.rint(pose).astype(np.int32))
+            k, twisted = _turned(bars, motion.moves, k)
+            rows += twisted
+            pose = np.vstack([np.zeros(3), grid.DIRECTIONS[bars].cumsum(axis=0)])
+        else:
+            rows += [(k, bar) for bar in _twisted(pose, move, motion)]
+            pose, k = after(pose, move, motion), k + 1
     return np.array(rows, np.int32).reshape(-1, 2)
 
 
+def _turned(
+    bars: NDArray[np.int8], moves: grid.IntArray, first: int
+) -> tuple[int, list[tuple[int, int]]]:
+    """Make the PEELs, SWINGs and DOORs from row `first` on: the row after them, and what twists."""
+    found = np.empty((2 * (len(moves) - first), 2), np.int32)
+    stop, n_found = _turn(bars, moves, first, found)
+    if stop < len(moves) and moves[stop, 0] in TURNS:
+        raise ValueError(f"move {moves[stop].tolist()} does not turn a bar by 90 degrees")
+    return stop, [(k, bar) for k, bar in found[:n_found].tolist()]
+
+
+@kernel
+def _turn(
+    bars: NDArray[np.int8], moves: grid.IntArray, first: int, found: grid.IntArray
+) -> tuple[int, int]:
+    """Turn bars (n,), directions 0..5, up to a move of another kind or one that cannot be made.
+
+    The row of that move, and how many rows (move, bar) of `found` are filled.
+    """
+    k, n_found = first, 0
+    while k < len(moves):
+        kind, joint, other, value = moves[k]
+        start, stop, old, new = _turning(bars, kind, joint, other, value)
+        if start == stop:
+            break
+        for hinge in (start, stop):
+            capsule = hinge - 1 + hinge % 2
+            if 0 < hinge < len(bars) and _lies_along(bars, capsule, 3 - old % 3 - new % 3):
+                found[n_found] = (k, capsule)
+                n_found += 1
+        _carry(bars[start:stop], old, new)
+        k += 1
+    return k, n_found
+
+
+@part
+def _turning(
+    bars: NDArray[np.int8], kind: int, joint: int, other: int, value: int
+) -> tuple[int, int, int, int]:
+    """What a PEEL, SWING or DOOR turns: bars start..stop - 1, as direction `old` turns to `new`.
+
+    None, from 0 to 0, if it is another kind of move or cannot be made.
+    """
+    none = (0, 0, 0, 0)
+    if not (0 <= joint <= len(bars) and 0 <= other <= len(bars)):
+        return none
+    if kind == _DOOR:
+        along = _line(bars, joint, other)
+        if along < 0 or abs(value) != 1:
+            return none
+        old, new = (along + 1) % 3, (along + 2) % 3
+        return joint, other, old, new if (along < 3) == (value > 0) else new + 3
+    bar = min(joint, other)
+    if abs(joint - other) != 1 or not 0 <= value < 6 or bars[bar] % 3 == value % 3:
+        return none
+    new = value if other > joint else (value + 3) % 6
+    if kind == _PEEL:
+        return bar, bar + 1, bars[bar], new
+    if kind == _SWING:
+        return (bar, len(bars), bars[bar], new) if other > joint else (0, bar + 1, bars[bar], new)
+    return none
+
+
+@part
+def _line(bars: NDArray[np.int8], joint: int, other: int) -> int:
+    """The direction 0..5 from a joint to a later one, -1 if no lattice line goes through both."""
+    x, y, z = 0, 0, 0
+    for bar in range(joint, other):
+        step = 1 if bars[bar] < 3 else -1
+        x += step * (bars[bar] % 3 == 0)
+        y += step * (bars[bar] % 3 == 1)
+        z += step * (bars[bar] % 3 == 2)
+    if (x != 0) + (y != 0) + (z != 0) != 1:
+        return -1
+    return (y != 0) + 2 * (z != 0) + 3 * (x + y + z < 0)
+
+
+@part
+def _lies_along(bars: NDArray[np.int8], capsule: int, axis: int) -> bool:
+    """Whether a capsule lies along an axis, and the hinges at both its ends across."""
+    before, after = bars[capsule - 1] % 3, bars[capsule + 1] % 3
+    return bool(bars[capsule] % 3 == axis and before != axis and after != axis)
+
+
+@part
+def _carry(bars: NDArray[np.int8], old: int, new: int) -> None:
+    """Turn directions by the quarter turn that leads from `old` to `new`."""
+    for bar in range(len(bars)):
+        d = bars[bar]
+        if d % 3 == old % 3:
+            bars[bar] = new if d == old else (new + 3) % 6
+        elif d % 3 == new % 3:
+            bars[bar] = (old + 3) % 6 if d == new else old
+
+
 def _twisted(pose: grid.FloatArray, move: grid.IntArray, motion: Motion) -> list[int]:
+    """The capsules that a TILT, PULL or BEND twists."""
     kind, joint, other, value = (int(x) for x in move)
-    match kind:
-        case Move.TILT:
-            bars = np.diff(moved(pose, move, motion, _GENERIC[0]), axis=0)
-            return _capsules(_not_square(bars[:-2], bars[1:-1], bars[2:]))
-        case Move.PULL:
-            return _twisted_by_pull(pose, joint, value)
-        case Move.BEND:
-            along = np.abs(np.diff(pose[:, joint])) > 0.5
-            return _twisted_by_bend(along, motion.angles[other], motion.angles[value])
-        case _:
-            return _twisted_at_hinges(pose, kind, joint, other, value)
+    if kind == Move.PULL:
+        return _twisted_by_pull(pose, joint, value)
+    if kind == Move.BEND:
+        along = np.abs(np.diff(pose[:, joint])) > 0.5
+        return _twisted_by_bend(along, motion.angles[other], motion.angles[value])
+    bars = np.diff(moved(pose, move, motion, _GENERIC[0]), axis=0)
+    return _capsules(_not_square(bars[:-2], bars[1:-1], bars[2:]))
 
 
 def _capsules(at_inner_bar: NDArray[np.bool_]) -> list[int]:
@@ -107,21 +207,6 @@ def _not_square(
     across = np.abs((np.cross(sides[0], sides[1]) * bars).sum(axis=1))
     oblique: NDArray[np.bool_] = np.minimum(along, across) > _SQUARE
     return oblique
-
-
-def _twisted_at_hinges(
-    pose: grid.FloatArray, kind: int, joint: int, other: int, value: int
-) -> list[int]:
-    turning = int(np.abs(pose[other] - pose[joint]).argmax())
-    axis = turning if kind == Move.DOOR else 3 - turning - value % 3
-    twisted = []
-    for hinge in (joint,) if kind == Move.SWING else (joint, other):
-        capsule = hinge - 1 + hinge % 2
-        if 0 < hinge < len(pose) - 1:
-            near = np.abs(np.diff(pose[capsule - 1 : capsule + 3, axis]))
-            if (np.rint(near) == (0, 1, 0)).all():
-                twisted.append(capsule)
-    return sorted(twisted)
 
 
 def _twisted_by_pull(pose: grid.FloatArray, head: int, value: int) -> list[int]:

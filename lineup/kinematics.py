@@ -59,6 +59,10 @@ class Move(IntEnum):
     BEND = 5
 
 
+TURNS = (Move.PEEL, Move.SWING, Move.DOOR)
+"""Kinds of move that turn a row of bars by 90 degrees, and no others."""
+
+
 def frames(motion: Motion, every: int = 1, substeps: int = 1) -> Iterator[FloatArray]:
     """Poses of a motion, (P, 3) float64 each, from the folded pose to the last.
 
@@ -96,11 +100,16 @@ def _frames(motion: Motion, every: int, substeps: int) -> Iterator[FloatArray]:
         if k % every == 0 or k == len(motion):
             for s in range(1, substeps):
                 yield moved(pose, move, motion, s / substeps)
-        pose = moved(pose, move, motion, 1.0)
-        if move[0] != Move.BEND or on_lattice(motion.angles[move[3]]):
-            pose = np.rint(pose)
+        pose = after(pose, move, motion)
         if k % every == 0 or k == len(motion):
             yield pose.copy()
+
+
+def after(pose: FloatArray, move: IntArray, motion: Motion) -> FloatArray:
+    """The pose after a whole move, rounded where it is on the lattice."""
+    made = moved(pose, move, motion, 1.0)
+    between = move[0] == Move.BEND and not on_lattice(motion.angles[move[3]])
+    return made if between else np.rint(made)
 
 
 def moved(pose: FloatArray, move: IntArray, motion: Motion, t: float) -> FloatArray:

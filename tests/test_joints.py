@@ -53,6 +53,21 @@ def test_peels_swings_and_doors_agree_with_sampling(start, data):
     assert slot_violations(trial).tolist() == [list(row) for row in twisted(trial, 9)]
 
 
+@examples(120)
+@given(chains(), st.data())
+def test_turns_in_a_row_agree_with_each_by_itself(start, data):
+    pose, rows, alone = even(start), [], []
+    for k in range(6):
+        could = turns(pose)
+        if not could or len(np.unique(pose, axis=0)) < len(pose):
+            break
+        rows.append(data.draw(st.sampled_from(could)))
+        trial = single(pose, rows[-1])
+        alone += [[k, bar] for _, bar in slot_violations(trial).tolist()]
+        pose = np.rint(moved(pose.astype(float), trial.moves[0], trial, 1.0)).astype(np.int32)
+    assert slot_violations(motion(even(start), rows)).tolist() == alone
+
+
 @examples(240)
 @given(chains(), st.data())
 def test_tilts_agree_with_sampling(start, data):
@@ -185,9 +200,22 @@ def test_half_a_block_is_refused():
         slot_violations(motion(walk("EE"), []))
 
 
-def test_a_move_that_turns_nothing_is_refused():
-    with pytest.raises(ValueError, match="does not turn a bar by 90 degrees"):
-        slot_violations(motion(walk("EEE"), [(Move.PEEL, 1, 2, 0)]))
+NO_TURNS = {
+    "a bar to its own direction": (Move.PEEL, 1, 2, EAST),
+    "a bar straight back": (Move.SWING, 1, 2, WEST),
+    "to no direction": (Move.PEEL, 1, 2, 6),
+    "two bars as one": (Move.PEEL, 1, 3, NORTH),
+    "a bar beyond the end": (Move.SWING, 3, 4, UP),
+    "a door off the lattice": (Move.DOOR, 0, 3, 1),
+    "a door backwards": (Move.DOOR, 2, 0, 1),
+    "a door by half a turn": (Move.DOOR, 0, 2, 2),
+}
+
+
+@pytest.mark.parametrize("row", NO_TURNS.values(), ids=NO_TURNS)
+def test_a_move_that_turns_nothing_by_90_degrees_is_refused(row):
+    with pytest.raises(ValueError, match=r"move \[.*\] does not turn a bar by 90 degrees"):
+        slot_violations(motion(walk("EEN"), [row]))
 
 
 def test_unknown_joints_are_refused():

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .._jit import kernel, part
-from ..kinematics import Move
+from ..kinematics import TURNS
 from ._chain import (
     ENTRY_COST,
     FAR_X,
@@ -43,8 +43,7 @@ from ._sweeps import XHI, XLO, Floats, Ints, Nearest, compare, nearest_bars
 FINE, JOINTS, DIRECTION, DOOR, TOUCH, BEND, OUTGROWN = range(7)
 """What `carry_out` found: nothing wrong, a malformed move (three ways), or a failed move."""
 
-KINDS = (Move.PEEL, Move.SWING, Move.DOOR)
-_PEEL, _SWING, _DOOR = int(Move.PEEL), int(Move.SWING), int(Move.DOOR)
+_PEEL, _SWING, _DOOR = (int(kind) for kind in TURNS)
 
 
 class Limits(NamedTuple):
@@ -68,7 +67,7 @@ class Found(NamedTuple):
 
 
 def carry_out(pose: Ints, moves: Ints, first: int, limits: Limits, extent: Floats) -> Found:
-    """Judge the moves from row `first` on, up to a fault or a move that is none of `KINDS`.
+    """Judge the moves from row `first` on, up to a fault or a move that is none of `TURNS`.
 
     `pose` is moved along, and `extent`, (2, 3) the lowest and highest positions met, widened.
     """

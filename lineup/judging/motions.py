@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from .. import grid
 from .._record import of_kind
 from ..joints import JOINTS, slot_violations
-from ..kinematics import Move
+from ..kinematics import TURNS, Move
 from ..solid import Certificate, Motion, Obstacles
 from . import _bends, _obstacles, _pulls, _turns
 from ._approach import FINE, TOUCH, approach
@@ -239,7 +239,7 @@ class _Trial:
         return None
 
     def _moves(self) -> Certificate | None:
-        judges = dict.fromkeys(_turns.KINDS, self._turns)
+        judges = dict.fromkeys(TURNS, self._turns)
         judges |= {Move.TILT: self._tilt, Move.PULL: self._pulls, Move.BEND: self._bend}
         while self.checked < len(self.motion):
             where = self.checked
