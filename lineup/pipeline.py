@@ -102,6 +102,8 @@ def lineup(
         if len(set(names)) < len(names):
             listed = ", ".join(sorted(names))
             raise ValueError(f"two models would be stored under one name: {listed}")
+        for name in names:
+            plain_name(name)
         Path(folder).mkdir(parents=True, exist_ok=True)
     attempts = [
         _attempt(name, source, blocks, seed, folder, progress, ends, joints)
@@ -189,7 +191,7 @@ def transformations(
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     tell = progress or (lambda pair: None)
-    made = design.table.loc[design.table["failure"] == "", "model"]
+    made = [plain_name(m) for m in design.table.loc[design.table["failure"] == "", "model"]]
     rows = []
     for (name, a), (other, b) in permutations(zip(made, design.foldings, strict=True), 2):
         tell(f"{name} to {other}")

@@ -158,12 +158,15 @@ def _filled_cells(
     if surface.closed:
         # Whole cells across the bounding box: a face of the mesh in one of its planes is exact.
         n = np.maximum(1, np.round(extent / cell))
-        edges, shape = extent / n, n.astype(int) + 2 * _MARGIN
+        edges, shape = extent / n, n + 2 * _MARGIN
     else:
         edges = np.full(3, cell)
-        shape = _BLOCK * np.ceil((extent / cell + 2 * _MARGIN) / _BLOCK).astype(int)
+        shape = _BLOCK * np.ceil((extent / cell + 2 * _MARGIN) / _BLOCK)
+    if shape.prod() > 2 * _MOST_CELLS:
+        sides = " by ".join(f"{side:.3g}" for side in extent)
+        raise ValueError(f"the mesh is too thin to be sampled: its bounding box is {sides}")
     origin = (low + high) / 2 - shape * edges / 2
-    return _fill(surface, origin, edges, tuple(shape)), origin, edges
+    return _fill(surface, origin, edges, tuple(shape.astype(int))), origin, edges
 
 
 def _fill(

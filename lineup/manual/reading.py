@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import os
 from pathlib import Path
 from typing import TypeAlias
@@ -11,6 +12,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from .. import grid
+from .._files import content
 from ..kinematics import Move
 from ..motion.plan import DIAMETER, MAX_BEND_DEG
 from ..solid import Certificate, Folding, Motion, VoxelPath
@@ -65,14 +67,12 @@ def read_manual(file: str | os.PathLike[str]) -> Folding:
     True
     """
     file = Path(file)
-    if not file.is_file():
-        raise FileNotFoundError(f"no file {file}")
     if file.suffix not in (".json", ".csv"):
         raise ValueError(f"{file}: a manual is read from .json or .csv")
     try:
         if file.suffix == ".csv":
             return _followed(_csv_rows(file), DIAMETER, MAX_BEND_DEG)
-        document = Document.model_validate_json(file.read_bytes())
+        document = Document.model_validate_json(content(file))
         folding = _followed(document.rows, document.diameter, document.max_bend_deg)
         _check_document(document, folding)
         return folding
@@ -84,14 +84,14 @@ def read_manual(file: str | os.PathLike[str]) -> Folding:
 
 def _csv_rows(file: Path) -> list[BlockRow]:
     rows = []
-    with file.open(encoding="utf-8", newline="") as text:
-        reader = csv.DictReader(text, restkey="beyond", strict=True)
-        try:
-            for k, entries in enumerate(reader, start=1):
-                given = {name: entry for name, entry in entries.items() if entry is not None}
-                rows.append(_csv_row(k, given))
-        except csv.Error as error:
-            raise ValueError(str(error)) from None
+    text = io.StringIO(content(file).decode(), newline="")
+    reader = csv.DictReader(text, restkey="beyond", strict=True)
+    try:
+        for k, entries in enumerate(reader, start=1):
+            given = {name: entry for name, entry in entries.items() if entry is not None}
+            rows.append(_csv_row(k, given))
+    except csv.Error as error:
+        raise ValueError(str(error)) from None
     return rows
 
 
