@@ -40,7 +40,7 @@ def triangles(data: bytes, ending: str, folder: Path) -> tuple[NDArray[Any], NDA
         If it cannot be read, ends early, or unfolds into more than `MOST_NUMBERS` or `MOST_PIECES`.
     """
     try:
-        data = _CHECKED.get(ending, lambda data: data)(data)
+        data = _CHECKED.get(ending, bytes)(data)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             # A file holding one mesh and a file holding a scene of placed meshes read alike.
@@ -55,7 +55,7 @@ def triangles(data: bytes, ending: str, folder: Path) -> tuple[NDArray[Any], NDA
     except Exception as error:  # every reader of trimesh fails in its own way
         why = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise ValueError(f"cannot be read as a mesh: {why}") from error
-    declared = _DECLARED.get(ending, lambda data: 0)(data)
+    declared = _DECLARED[ending](data) if ending in _DECLARED else 0
     if len(faces) < declared:
         raise ValueError(
             f"cannot be read as a mesh: it speaks of {declared} faces, and {len(faces)} are there"
@@ -63,16 +63,16 @@ def triangles(data: bytes, ending: str, folder: Path) -> tuple[NDArray[Any], NDA
     return vertices, faces
 
 
-class _Beside:
+class _Beside(dict[str, bytes]):
     """The files that a glTF file may name: those in its own folder, of `MOST_BYTES` in all."""
 
     def __init__(self, folder: Path) -> None:
-        self.folder, self.left = folder, MOST_BYTES
+        self.folder = folder
 
-    def __getitem__(self, name: str) -> bytes:
-        found = content(self.folder / plain_name(name), self.left)
-        self.left -= len(found)
-        return found
+    def __missing__(self, name: str) -> bytes:
+        left = MOST_BYTES - sum(map(len, self.values()))
+        self[name] = content(self.folder / plain_name(name), left)
+        return self[name]
 
 
 def _without_materials(data: bytes) -> bytes:

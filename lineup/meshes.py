@@ -184,9 +184,7 @@ def _oriented(
     )
 
 
-def _welded(
-    vertices: FloatArray, faces: FaceArray, name: str
-) -> tuple[FloatArray, FaceArray]:
+def _welded(vertices: FloatArray, faces: FaceArray, name: str) -> tuple[FloatArray, FaceArray]:
     """One vertex for all that agree to 1e-8 of the extent, and no face that this collapses."""
     low, extent = vertices.min(axis=0), np.ptp(vertices, axis=0).max()
     rounded = np.round((vertices - low) / extent * 1e8)

@@ -15,6 +15,7 @@ import numpy as np
 import pandas as pd
 
 from . import grid
+from ._files import plain_name
 from ._record import listed, of_kind
 from .bounds import path_bound
 from .catalog import model
@@ -191,7 +192,8 @@ def transformations(
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     tell = progress or (lambda pair: None)
-    made = [plain_name(m) for m in design.table.loc[design.table["failure"] == "", "model"]]
+    named = design.table.loc[design.table["failure"] == "", "model"]
+    made = [plain_name(str(name)) for name in named]
     rows = []
     for (name, a), (other, b) in permutations(zip(made, design.foldings, strict=True), 2):
         tell(f"{name} to {other}")

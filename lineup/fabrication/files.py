@@ -154,4 +154,3 @@ def _stl_records(corners: FloatArray) -> bytes:
     records["normal"] = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
     records["corners"] = corners
     return records.tobytes()
-
