@@ -14,11 +14,14 @@ ifeq ($(shell uname -s)$(DISPLAY),Linux)
 export VTK_DEFAULT_OPENGL_WINDOW ?= vtkEGLRenderWindow
 endif
 
+# Where nothing compiled may be kept, each start of Python takes several times as long.
+unexport PYTHONDONTWRITEBYTECODE
+
 reproduce: $(STAMP)  ## Table 2 of the paper: results/table2.csv, .md, .tex
 	$(BIN)/lineup table2
 
 test: $(STAMP)  ## The default tests (then the others: .venv/bin/pytest -m slow, or -m notebook)
-	$(BIN)/python -m pytest -n 2 -q
+	$(BIN)/python -m pytest -n 2 --dist worksteal -q
 
 lint: $(STAMP)  ## Style and types
 	$(BIN)/ruff check .

@@ -8,7 +8,6 @@ from typing import Annotated, Any
 import pandas as pd
 import typer
 from joining import joined
-from scipy.stats import spearmanr
 
 import lineup as lu
 from lineup.storage import write_whole
@@ -101,6 +100,8 @@ def rank_correlation(first: pd.Series, second: pd.Series) -> float:
     """Spearman's; nan where one of them never changes."""
     if first.nunique() < 2 or second.nunique() < 2:
         return float("nan")
+    from scipy.stats import spearmanr  # slow to import
+
     return float(spearmanr(first, second).statistic)
 
 

@@ -248,9 +248,10 @@ def draw(table: pd.DataFrame, fits: pd.DataFrame, file: Path) -> None:
     figure = Figure(figsize=(8, 5), layout="constrained")
     axes = figure.add_subplot(xscale="log", yscale="log", xlabel="voxels n", ylabel="seconds")
     slopes = fits.set_index("method")["exponent"]
-    for method, runs in table.groupby("method", sort=False):
+    for k, (method, runs) in enumerate(table.groupby("method", sort=False)):
         label = f"{method}: n^{slopes[method]:.2f}"
-        axes.plot(runs["voxels"], runs["seconds"], marker="o", label=label)
+        marker = "os"[k // 10 % 2]  # there are ten colours
+        axes.plot(runs["voxels"], runs["seconds"], marker=marker, label=label)
     n = np.array([table["voxels"].min(), table["voxels"].max()])
     for power, style in ((1, "--"), (2, ":")):
         line = table["seconds"].min() * (n / n[0]) ** power

@@ -68,6 +68,8 @@ def _matched_edges(voxels: IntArray, number: NDArray[np.int64]) -> int:
 def _u_free_edges(voxels: IntArray, number: NDArray[np.int64]) -> int:
     """Edges of a fractional 2-matching with at most two on each unit square, rounded down."""
     tail, axis = np.nonzero(number[tuple((voxels[:, None] + 1 + UNIT).transpose(2, 0, 1))] >= 0)
+    if not len(tail):
+        return 0
     head = number[tuple((voxels[tail] + 1 + UNIT[axis]).T)]
     edge = np.full((len(voxels), 3), -1)
     edge[tail, axis] = np.arange(len(tail))

@@ -70,7 +70,9 @@ def slot_violations(motion: Motion) -> grid.IntArray:
         raise ValueError(f"a chain of blocks has an even number of joints, got {len(motion.start)}")
     rows = [
         (k, bar)
-        for k, (pose, move) in enumerate(zip(frames(motion), motion.moves, strict=False))
+        for k, ((pose, _), move) in enumerate(
+            zip(pairwise(frames(motion)), motion.moves, strict=True)
+        )
         for bar in _twisted(pose, move, motion)
     ]
     return np.array(rows, np.int32).reshape(-1, 2)

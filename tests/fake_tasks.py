@@ -12,6 +12,9 @@ import lineup as lu
 CALLS = "LINEUP_TEST_CALLS"
 """Environment variable naming the file that every call is noted in."""
 
+PAUSE = 0.3
+"""Seconds that a slow call takes, so that others come and go, or an end comes, meanwhile."""
+
 
 def work(model: str, blocks: int, seed: int = 0, *, folder: Path, progress) -> dict:
     with open(os.environ[CALLS], "a") as calls:
@@ -30,17 +33,20 @@ def work(model: str, blocks: int, seed: int = 0, *, folder: Path, progress) -> d
     if model == "interrupt":
         raise KeyboardInterrupt
     if model == "slow":
-        time.sleep(0.3)
+        time.sleep(PAUSE)
     (folder / f"{model}.txt").write_text("saved")
     return {"voxels": blocks * 2, "length": 2 * blocks + seed}
 
 
 def table2_task(model: str, blocks: int, seed: int, *, folder: Path, progress) -> dict:
+    from lineup.kinematics import Move  # slow to import, and the other task has no use for it
+
     progress("fold")
     if model == "cannon":
         raise ValueError("no such mesh")
-    path = lu.VoxelPath(np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]))
-    lu.save(lu.Folding(path, lu.unfold(path)), folder / f"{model}.folding.json")
+    path = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (1, 2, 0)])
+    motion = lu.Motion(path, np.array([(Move.SWING, 1, 2, 0)]), 0.999, 90.0, True, "straight")
+    lu.save(lu.Folding(lu.VoxelPath(path), motion), folder / f"{model}.folding.json")
     return {
         "voxels": 4,
         "source": "procedural",

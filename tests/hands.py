@@ -6,17 +6,27 @@ import lineup as lu
 from lineup import grid
 from lineup.kinematics import Move
 
-BOXES = [((5, 4, 2), 0), ((4, 4, 4), 0), ((3, 3, 5), 0), ((2, 2, 1), 0), ((5, 3, 4), 9)]
+BOXES = [
+    *[((5, 4, 2), 0), ((4, 4, 4), 0), ((3, 3, 5), 0), ((2, 2, 1), 0), ((5, 3, 4), 9)],
+    *[((4, 4, 4), 0, "slotted"), ((3, 3, 5), 0, "slotted"), ((5, 3, 4), 9, "slotted")],
+]
 
 
-def folded(shape, seed):
-    return lu.fold(lu.VoxelSolid(np.ones(shape, bool)), seed=seed, rounds=60, trial_rounds=10)
+def folded(shape, seed, joints="free"):
+    solid = lu.VoxelSolid(np.ones(shape, bool))
+    return lu.fold(solid, seed=seed, rounds=60, trial_rounds=10, slot_rounds=5, joints=joints)
+
+
+def named(box):
+    """The name of a test's box."""
+    return "-".join(["x".join(map(str, box[0])), *box[2:]])
 
 
 def hand(document):
     """The motion of a hand that knows nothing but the rows, and the base, as they are on the card.
 
-    It holds a straight line whose base is in its place, and bends one joint after the other.
+    It holds a straight line whose base is in its place, and bends one joint after the other, hinges
+    in the manner that is asked for.
     """
     rows = document["rows"]
     (a, b), events = events_of(rows)
@@ -24,7 +34,8 @@ def hand(document):
     along = second - first
     line = first + np.outer(np.arange(2 * len(rows)) - a, along)
     loose = {"head": letter(-along), "tail": letter(along)}
-    moves = []
+    manners = {row["block"]: row["manner"] for row in rows}
+    moves, last = [], dict(loose)
     for at in range(1, max(events, default=0) + 1):
         what, way = events[at]
         if isinstance(what, str):
@@ -35,8 +46,17 @@ def hand(document):
             continue
         end, before = ("head", a) if what < a else ("tail", b)
         assert abs(what - before) == 1
-        if way != loose[end]:
-            moves.append((Move.PEEL, before, what, grid.LETTERS.index(way)))
+        manner = manners[what // 2 + 1] if what // 2 == before // 2 else ""
+        bend = (Move.PEEL, before, what, grid.LETTERS.index(way))
+        if manner == "hinge first":
+            piece = moves.pop()
+            assert piece[2] == before
+            moves += [bend, piece]
+        elif manner == "straighten":
+            moves += [(*bend[:3], grid.LETTERS.index(last[end])), bend]
+        elif way != loose[end]:
+            moves.append(bend)
+        last[end] = way
         a, b = min(a, what), max(b, what)
     return lu.Motion(line, np.array(moves, int).reshape(-1, 4), 0.999, 90.0, False, "by hand")
 

@@ -16,6 +16,12 @@ CORNER = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (1, 2, 0)])
 UNFOLDS = lu.Motion(CORNER, np.array([(Move.SWING, 1, 2, 0)]), 1.0, 90.0, True, "straight")
 
 
+@pytest.fixture(autouse=True)
+def plain(monkeypatch):
+    """Pictures by matplotlib, which is quick for small ones."""
+    monkeypatch.setattr(draw.render, "renderer", lambda: "matplotlib")
+
+
 def pictures_of(file):
     with Image.open(file) as film:
         return [np.asarray((film.seek(k), film.convert("RGB"))[1]) for k in range(film.n_frames)]

@@ -5,7 +5,8 @@ from itertools import pairwise
 import networkx as nx
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from oracles import outermost_boundary, without_dangling
 from polycubes import blob, polycubes
@@ -59,7 +60,7 @@ def linked(nodes, traversal):
     return held
 
 
-@settings(max_examples=30, deadline=None)
+@examples(60)
 @given(st.integers(0, 2**32).map(blob) | polycubes(60))
 def test_every_row_is_what_the_definitions_say(occupancy):
     solid = lu.VoxelSolid(occupancy)

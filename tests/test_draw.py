@@ -44,10 +44,11 @@ def folding(solid):
 
 @pytest.fixture(params=["vtk", "matplotlib"])
 def any_renderer(request, monkeypatch):
-    """Each test that asks for it runs with both ways to draw."""
+    """Each test that asks for it runs with both ways to draw, and with smooth edges."""
     if request.param == "vtk" and vtk_is_missing():
         pytest.skip("VTK cannot draw off screen here")
     monkeypatch.setattr(render, "renderer", lambda: request.param)
+    monkeypatch.setattr(render, "_OVERSAMPLING", 2)
 
 
 @pytest.fixture

@@ -4,6 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles import pose_bend_deg, pose_clearance
@@ -181,7 +182,7 @@ def check_bending(motion, samples=12):
 
 
 @given(polycubes(40), st.sampled_from(["energy", "barrier"]))
-@settings(max_examples=15, deadline=None)
+@examples(40)
 def test_motions_of_layered_paths_keep_what_they_say(occupancy, method):
     if occupancy.sum() < 2:
         return
@@ -190,7 +191,7 @@ def test_motions_of_layered_paths_keep_what_they_say(occupancy, method):
 
 
 @given(walks, axes, st.sampled_from(["energy", "barrier"]))
-@settings(max_examples=15, deadline=None)
+@examples(60)
 def test_motions_of_walks_keep_what_they_say(voxels, axis, method):
     options = {"axis": axis} if method == "energy" else {"axes": (axis,)}
     check_bending(lu.unfold(lu.VoxelPath(voxels), method, steps=60, **options))

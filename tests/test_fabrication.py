@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import trimesh
+from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from manifold3d import Manifold, OpType
@@ -49,7 +50,7 @@ def small(tmp_path_factory):
 
 
 @given(walks(min_bars=3, max_bars=11), st.sampled_from(sorted(BLOCKS)))
-@settings(max_examples=12)
+@examples(40)
 def test_no_piece_runs_into_another_in_any_lattice_pose(voxels, name):
     block = BLOCKS[name]
     pieces = placed(voxels[: len(voxels) // 2 * 2], block)

@@ -5,8 +5,9 @@ from dataclasses import replace as with_changes
 import numpy as np
 import pytest
 from contracts import check_folding
+from examples import examples
 from hostile import KINDS, hostile
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 from oracles import rod_fault
 from polycubes import polycubes
@@ -97,7 +98,7 @@ def test_every_kind_of_solid_is_folded(name):
 
 
 @given(polycubes(200), st.integers(0, 99))
-@settings(max_examples=20)
+@examples(40)
 def test_every_polycube_is_folded(occupancy, seed):
     if occupancy.sum() > 1:
         solid = lu.VoxelSolid(occupancy)
@@ -144,7 +145,7 @@ def test_a_length_is_kept_to(length):
 
 @given(polycubes(80), st.integers(0, 2**32 - 1))
 @example(np.ones((5, 2, 2), bool), 1)  # a rod swings for no need when one bar is left
-@settings(max_examples=15)
+@examples(40)
 def test_any_even_length_is_kept_to(occupancy, seed):
     if occupancy.sum() < 2:
         return

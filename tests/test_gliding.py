@@ -5,7 +5,8 @@ import dataclasses
 import networkx as nx
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from examples import examples
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from oracles import n_us
 from polycubes import polycubes
@@ -171,7 +172,7 @@ def check_glide(motion, a, b, around=None):
     assert motion.diameter == (0.866 if n_us(a) or n_us(b) else motion.diameter)
 
 
-@settings(max_examples=25, deadline=None)
+@examples(48)
 @given(polycubes(30), polycubes(30), st.integers(0, 5), st.integers(0, 5))
 def test_it_ends_where_it_should(one, other, up, aside):
     assume(min(one.sum(), other.sum()) > 1)

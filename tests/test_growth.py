@@ -4,7 +4,8 @@ import itertools
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from oracles import rod_fault, swept_points
 from polycubes import polycubes
@@ -131,7 +132,7 @@ def check_notes(fold, body):
 
 
 @given(polycubes(60), st.integers(0, 2**32 - 1))
-@settings(max_examples=20)
+@examples(60)
 def test_plan_and_notes_stay_true_through_random_changes(occupancy, seed):
     if occupancy.sum() < 2:
         return
@@ -209,7 +210,7 @@ def random_piece(grown):
 
 
 @given(polycubes(80), st.integers(0, 2**32 - 1))
-@settings(max_examples=25)
+@examples(48)
 def test_a_change_does_what_it_says_and_a_refused_one_or_one_undone_leaves_no_trace(
     occupancy, seed
 ):
@@ -264,7 +265,7 @@ def test_where_labels_have_no_gap_a_change_waits_for_new_ones():
 
 
 @given(polycubes(60), st.integers(0, 2**32 - 1))
-@settings(max_examples=20)
+@examples(80)
 def test_swept_cells_are_those_of_the_point_sets(occupancy, seed):
     if occupancy.sum() < 2:
         return

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from examples import examples
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from oracles import reversed_motion
 from test_judging import boustrophedon, motion, peeled, walk
@@ -42,7 +43,7 @@ def even(start):
     return start[: len(start) - len(start) % 2]
 
 
-@settings(max_examples=100, deadline=None)
+@examples(240)
 @given(chains(), st.data())
 def test_peels_swings_and_doors_agree_with_sampling(start, data):
     start = even(start)
@@ -52,7 +53,7 @@ def test_peels_swings_and_doors_agree_with_sampling(start, data):
     assert slot_violations(trial).tolist() == [list(row) for row in twisted(trial, 9)]
 
 
-@settings(max_examples=60, deadline=None)
+@examples(240)
 @given(chains(), st.data())
 def test_tilts_agree_with_sampling(start, data):
     start = even(start)
@@ -68,7 +69,7 @@ def test_tilts_agree_with_sampling(start, data):
     assert slot_violations(trial).tolist() == [list(row) for row in twisted(trial, 17)]
 
 
-@settings(max_examples=60, deadline=None)
+@examples(80)
 @given(chains(max_bars=8), st.booleans(), st.integers(0, 5))
 def test_pulls_agree_with_sampling(start, by_the_last, value):
     start = even(start)
@@ -80,7 +81,7 @@ def test_pulls_agree_with_sampling(start, by_the_last, value):
     assert slot_violations(trial).tolist() == [list(r) for r in twisted(trial, 40 * len(start))]
 
 
-@settings(max_examples=60, deadline=None)
+@examples(100)
 @given(turnings())
 def test_bends_agree_with_sampling(trial):
     start = even(trial.start)
@@ -182,6 +183,11 @@ def test_half_a_block_is_refused():
     assert verdict.reason == "start: 3 joints are no chain of blocks, which have two each"
     with pytest.raises(ValueError, match="even number of joints, got 3"):
         slot_violations(motion(walk("EE"), []))
+
+
+def test_a_move_that_turns_nothing_is_refused():
+    with pytest.raises(ValueError, match="does not turn a bar by 90 degrees"):
+        slot_violations(motion(walk("EEE"), [(Move.PEEL, 1, 2, 0)]))
 
 
 def test_unknown_joints_are_refused():

@@ -4,6 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from oracles import pose_bend_deg, pose_clearance, sampled_move, segment_distances
@@ -266,7 +267,7 @@ def test_the_box_holds_what_bulges_between_the_poses():
     assert (verdict.ok, verdict.where) == (False, 0)
 
 
-@settings(max_examples=40, deadline=None)
+@examples(80)
 @given(turnings())
 def test_the_box_agrees_with_sampling(trial):
     verdict = lu.certify(trial, diameter=1e-6, max_bend_deg=180)
@@ -286,13 +287,13 @@ def test_the_nearest_bars_and_the_most_bent_joint_are_named():
     assert sharp.most_bent == (0, 1)
 
 
-@settings(max_examples=60, deadline=None)
+@examples(80)
 @given(turnings())
 def test_one_bend_agrees_with_sampling(trial):
     judged_as_sampled(trial, diameter=0.2, samples=129)
 
 
-@settings(max_examples=40, deadline=None)
+@examples(60)
 @given(turnings(), st.sampled_from([0.8, 0.97, 0.999]))
 def test_thick_bars_agree_with_sampling(trial, diameter):
     judged_as_sampled(trial, diameter, samples=129)
@@ -305,7 +306,7 @@ def test_bends_of_long_chains_agree_with_sampling(trial):
     judged_as_sampled(trial, diameter=0.2, samples=513)
 
 
-@settings(max_examples=30, deadline=None)
+@examples(60)
 @given(turnings(max_bars=8))
 def test_the_largest_bend_is_that_of_the_angles(trial):
     """By a walk in steps of 1/512 of the bend, at most which the angle between bars can miss."""
@@ -327,7 +328,7 @@ def test_no_pair_of_a_long_chain_is_overlooked(seed):
     after = np.where(turns, before + (1500 * drift).astype(int), 0)
     trial = bent(path, axis, [before, after], straight=False)
     verdict = lu.certify(trial, diameter=1e-3, max_bend_deg=180)
-    poses = lu.frames(trial, substeps=64)
+    poses = lu.frames(trial, substeps=32)
     assert len(path) > 200
     assert "come within" in verdict.reason or verdict.clearance <= 1e-8 + min(
         map(pose_clearance, poses)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from all_pairs import move_clearance, outcome
 from chains import boustrophedon, motion, peeled, peeled_from_both_ends, turns, wander
+from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles import reversed_motion
@@ -44,7 +45,7 @@ def check(trial, diameter=0.999, max_bend_deg=90.0):
     return slow.fault
 
 
-@settings(max_examples=25)
+@examples(60)
 @given(SEEDS, st.sampled_from([(0.999, 90.0), (0.6, 90.0), (0.3, 180.0)]))
 def test_random_motions(seed, limits):
     """Anything that moves may move, ends, middles, limbs, in any order: thin bars get far."""
@@ -118,7 +119,7 @@ PLANTED = {
 }
 
 
-@settings(max_examples=25)
+@examples(60)
 @given(st.sampled_from(sorted(LONG)), st.sampled_from(sorted(PLANTED)), SEEDS)
 def test_faults_deep_inside_long_motions(name, fault, seed):
     check(planted(LONG[name], fault, np.random.default_rng(seed)))

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from examples import examples
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from oracles import alternates, enclosing, layer_runs
 from polycubes import STEPS, polycubes
@@ -231,7 +232,7 @@ def goes_on_beside(voxels, visits):
     return all(gap == 1 for gap in beside)
 
 
-@settings(max_examples=150, deadline=None)
+@examples(400)
 @given(polycubes(40), st.data())
 def test_visits_agree_with_flooding(occupancy, data):
     """Any walk in any solid: certified if components nest and are gone back to by Case 2."""

@@ -6,6 +6,7 @@ import os
 import numpy as np
 import pytest
 from chains import chains, single, turns, walk
+from examples import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from oracles import pose_bend_deg, pose_clearance, reversed_motion, sampled_move
@@ -33,7 +34,7 @@ def close_pairs(pose, reach=3.0):
 
 
 @pytest.mark.parametrize("part", PARTS)
-@settings(max_examples=25)
+@examples(48)
 @given(chains(), st.data())
 def test_one_turn_agrees_with_sampling(part, start, data):
     """Equal clearance and bend, so it certifies nothing that sampling refutes and no less."""
@@ -50,7 +51,7 @@ def test_one_turn_agrees_with_sampling(part, start, data):
         assert (verdict.where == 0) == verdict.reason.startswith("bend of")
 
 
-@settings(max_examples=60, deadline=None)
+@examples(80)
 @given(chains(max_bars=10), st.data())
 def test_tilts_are_never_certified_against_sampling(start, data):
     """Any targets at all, half of them all one direction: the lemma is a lower bound."""
@@ -75,7 +76,7 @@ def test_tilts_are_never_certified_against_sampling(start, data):
         assert bend_deg <= verdict.bend_deg + NEAR
 
 
-@settings(max_examples=25, deadline=None)
+@examples(48)
 @given(st.integers(4, 12), st.data())
 def test_whole_motions_keep_what_their_certificate_says_both_ways(n_bars, data):
     """Moves each judged good alone, from a line on: good together, played either way."""

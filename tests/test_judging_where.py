@@ -16,6 +16,7 @@ from chains import (
     walk,
     wander,
 )
+from examples import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from oracles import pose_bend_deg, reversed_motion, sampled_move
@@ -81,7 +82,7 @@ def test_the_most_bent_joint_bends_that_far_in_that_move(seed):
     assert max(before, default=0) < verdict.bend_deg - NEAR
 
 
-@settings(max_examples=30)
+@examples(48)
 @given(SEEDS)
 def test_the_extent_is_that_of_all_poses_shown(seed):
     """Of arcs, too: at 128 steps a quarter they are met within a ten-thousandth of their radius."""

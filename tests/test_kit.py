@@ -2,19 +2,23 @@
 
 import json
 
+import numpy as np
 import pandas as pd
 import pytest
 
 import lineup as lu
-from lineup import cli
+from lineup import cli, draw
 from lineup.grid import DIRECTIONS, LETTERS
+from lineup.manual.turns import with_few_turns
 
 
 @pytest.fixture(scope="module")
 def kit(tmp_path_factory):
     """A folder that `lineup kit` filled, and what it said at the end."""
     folder = tmp_path_factory.mktemp("kit")
-    code = cli.run(["kit", "duck", "--blocks", "20", "--out", str(folder)])
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(draw.render, "renderer", lambda: "matplotlib")  # quick for small pictures
+        code = cli.run(["kit", "duck", "--blocks", "20", "--out", str(folder)])
     return folder, code
 
 
@@ -33,6 +37,29 @@ def test_the_chain_is_one_that_printed_blocks_can_be(kit):
     folding = lu.load(kit[0] / "duck.folding.json")
     assert lu.certify(folding.motion, joints="slotted").ok
     assert "certified" in (kit[0] / "duck.html").read_text()
+
+
+@pytest.mark.parametrize("kind", ["json", "csv"])
+def test_its_manual_read_back_is_its_motion_and_certified_for_slots(kit, kind):
+    folding = lu.load(kit[0] / "duck.folding.json")
+    again = lu.read_manual(kit[0] / f"duck.manual.{kind}")
+    assert np.array_equal(again.path.voxels, folding.path.voxels)
+    assert np.array_equal(again.motion.moves, with_few_turns(folding.motion).moves)
+    verdict = lu.certify(again.motion, joints="slotted")
+    assert (verdict.ok, verdict.violations) == (True, 0)
+    rows = pd.read_csv(kit[0] / "duck.manual.csv", keep_default_na=False)
+    assert set(rows["manner"]) > {"hinge first"}
+    assert json.loads((kit[0] / "duck.manual.json").read_text())["verdict"]["joints"] == "slotted"
+
+
+@pytest.mark.parametrize("manner", ["straighten", "hinge first"])
+def test_a_manual_that_lost_a_manner_is_refused(kit, tmp_path, manner):
+    lines = (kit[0] / "duck.manual.csv").read_text().splitlines(keepends=True)
+    lost = next(k for k, line in enumerate(lines) if f",{manner}," in line)
+    lines[lost] = lines[lost].replace(f",{manner},", ",,")
+    (tmp_path / "lost.csv").write_text("".join(lines))
+    with pytest.raises(ValueError, match=f"row {lost}: (twists|manner) is "):
+        lu.read_manual(tmp_path / "lost.csv")
 
 
 def test_what_cannot_be_folded_ends_it(tmp_path, capsys):

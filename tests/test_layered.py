@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles import longest_path, voxel_graph
@@ -50,7 +51,7 @@ def check_visits(path, graph):
         assert (np.abs(np.diff(planar, axis=0)).sum(axis=1) == 1).all()
 
 
-@settings(max_examples=150, deadline=None)
+@examples(160)
 @given(polycubes(60), st.booleans(), st.integers(0, 3))
 def test_every_polycube_has_a_layered_path(occupancy, both_ends_on_top, seed):
     solid = lu.VoxelSolid(occupancy)
@@ -74,7 +75,7 @@ def test_thousands_of_polycubes(occupancy, both_ends_on_top, seed):
             check(path, solid)
 
 
-@settings(max_examples=40, deadline=None)
+@examples(80)
 @given(polycubes(11))
 def test_between_two_voxels_and_the_longest_path(occupancy):
     solid = lu.VoxelSolid(occupancy)

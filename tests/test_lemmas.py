@@ -7,6 +7,7 @@ import itertools
 
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from oracles import pose_bend_deg, pose_clearance, sampled_move, segment_distances
@@ -57,7 +58,7 @@ def taken(voxels):
 
 
 @given(paths())
-@settings(max_examples=40)
+@examples(140)
 def test_a_lattice_pose_has_clearance_one(pose):
     assert pose_clearance(pose.astype(float)) == 1
 
@@ -96,7 +97,7 @@ def test_a_pull_without_a_u_keeps_its_clearance_and_bend(start, data):
 
 
 @given(paths(), st.data())
-@settings(max_examples=40, deadline=None)
+@examples(80)
 def test_a_pull_of_any_simple_path_keeps_its_clearance_and_bend(start, data):
     rows = pulls(start)
     assume(rows)
@@ -124,7 +125,7 @@ def test_a_pull_onto_the_chain_goes_through_it():
 
 
 @given(walks(max_bars=10), st.sampled_from(STEPS))
-@settings(max_examples=20, deadline=None)
+@examples(80)
 def test_pulls_along_a_free_ray_end_in_a_straight_line(start, exit_step):
     ray = start[-1] + np.outer(np.arange(1, len(start)), exit_step)
     assume(not taken(ray) & taken(start))
@@ -145,7 +146,7 @@ def tilted(bars, towards):
 
 
 @given(walks(max_bars=20), st.integers(0, 5))
-@settings(max_examples=40, deadline=None)
+@examples(140)
 def test_a_tilt_of_a_monotone_path_brings_no_two_points_nearer(start, against):
     # What is left of a walk without its steps against one direction is monotone, hence simple.
     bars = grid.bar_directions(start)
@@ -264,7 +265,7 @@ def is_free(clearance, bend_deg):
 
 
 @given(rods(sideways=True), st.data())
-@settings(max_examples=80, deadline=None)
+@examples(220)
 def test_a_peel_is_free_of_collisions_exactly_where_its_box_is(rod, data):
     start, b, d, _ = rod
     pose, row = at_either_end(start, (Move.PEEL, b - 1, b, d), data)
@@ -272,7 +273,7 @@ def test_a_peel_is_free_of_collisions_exactly_where_its_box_is(rod, data):
 
 
 @given(rods(sideways=False), st.data())
-@settings(max_examples=80, deadline=None)
+@examples(160)
 def test_a_swing_is_free_of_collisions_exactly_where_its_sector_is(rod, data):
     start, b, _, f = rod
     pose, row = at_either_end(start, (Move.SWING, b, b + 1, f), data)
@@ -351,7 +352,7 @@ def limbs(draw):
 
 
 @given(limbs())
-@settings(max_examples=80, deadline=None)
+@examples(120)
 def test_a_door_whose_rings_are_free_keeps_clear(limb):
     start, row = limb
     assert row in list(doors(start))
@@ -385,7 +386,7 @@ def quarter_turns(pose):
 
 
 @given(paths(), st.data())
-@settings(max_examples=40, deadline=None)
+@examples(80)
 def test_a_quarter_turn_bends_most_at_its_two_ends(start, data):
     row = data.draw(st.sampled_from(list(quarter_turns(start))))
     before, after = pose_bend_deg(start), pose_bend_deg(turned(start, row))

@@ -8,6 +8,7 @@ from collections import deque
 
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from oracles import (
@@ -151,7 +152,7 @@ def spliced(states, changed, end, span, places, reach):
 
 
 @given(changes())
-@settings(max_examples=25, deadline=None)
+@examples(60)
 def test_a_change_that_passes_the_rule_leaves_a_valid_plan(change):
     voxels, states, changed, end, span, places = change
     reach = int(np.ptp(np.vstack([voxels, changed]), axis=0).max()) + 1
@@ -277,7 +278,7 @@ def moved_at(one, t):
 
 
 @given(moves(), st.floats(0, 1))
-@settings(max_examples=60, deadline=None)
+@examples(140)
 def test_every_move_reversed_is_a_move_of_its_kind_through_the_same_poses(one, t):
     row = tuple(one.moves[0].tolist())
     after = np.rint(moved_at(one, 1.0)).astype(int)
@@ -346,7 +347,7 @@ def test_two_unfoldings_joined_at_the_line_lead_from_one_shape_to_the_other(a, b
 
 
 @given(paths())
-@settings(max_examples=30, deadline=None)
+@examples(80)
 def test_colours_alternate_so_that_every_contraction_and_every_way_between_is_even(voxels):
     colours = grid.colour(voxels)
     assert (colours[1:] != colours[:-1]).all()

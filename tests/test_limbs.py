@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 import pytest
 from contracts import check_folding, check_motion
+from examples import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from oracles import rod_fault, sampled_move
@@ -43,7 +44,7 @@ def is_clear(pose, limb, places):
 
 
 @given(seeds, st.integers(4, 60))
-@settings(max_examples=50)
+@examples(180)
 def test_a_limb_is_clear_exactly_if_the_judge_says_so(seed, n):
     pose, limbs = random_limbs(seed, n, 30)
     places = np.empty_like(pose.place)
@@ -59,7 +60,7 @@ def test_a_limb_is_clear_exactly_if_the_judge_says_so(seed, n):
 
 
 @given(seeds, st.integers(4, 14))
-@settings(max_examples=12)
+@examples(40)
 def test_a_limb_is_clear_exactly_if_samples_say_so(seed, n):
     pose, limbs = random_limbs(seed, n, 3)
     for limb in limbs:
@@ -129,10 +130,11 @@ def test_limbs_make_way_where_both_ends_are_shut_in(word):
 
 
 @given(polycubes(60), seeds)
-@settings(max_examples=20)
+@examples(40)
 def test_every_layered_path_of_a_small_solid_is_straightened(occupancy, seed):
     assume(occupancy.sum() > 1)
-    motion = lu.unfold(lu.layered_path(lu.VoxelSolid(occupancy), seed=seed), "peel", seed)
+    path = lu.layered_path(lu.VoxelSolid(occupancy), seed=seed, starts=1)
+    motion = lu.unfold(path, "peel", seed)
     check_motion(motion)
     assert motion.straight
 
@@ -247,7 +249,7 @@ def test_auto_checks_its_options_even_if_the_accordion_needs_none(name):
 
 
 @given(polycubes(60), st.integers(0, 9))
-@settings(max_examples=20)
+@examples(40)
 def test_both_ends_on_top_are_pulled_upward_or_it_says_how_far(occupancy, seed):
     assume(occupancy.sum() > 1)
     solid = lu.VoxelSolid(occupancy)

@@ -2,13 +2,16 @@
 
 import csv
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from chains import walk
-from hands import BOXES, folded, hand, letter
-from hypothesis import assume, given, settings
+from hands import BOXES, folded, hand, letter, named
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
+from test_motion import seeds
+from test_slots import even_walk
 
 import lineup as lu
 from lineup import grid
@@ -17,10 +20,11 @@ from lineup.manual import reading
 from lineup.manual.assembly import assembly_of
 from lineup.manual.documents import csv_text, document_of, json_text
 from lineup.manual.rows import BlockRow, rows_of
+from lineup.motion import plan
 from lineup.transformation.reversal import reversal
 
 
-@pytest.fixture(scope="module", params=BOXES, ids=lambda box: "x".join(map(str, box[0])))
+@pytest.fixture(scope="module", params=BOXES, ids=named)
 def folding(request):
     return folded(*request.param)
 
@@ -76,7 +80,7 @@ def test_a_hand_that_follows_the_rows_is_never_blocked_and_ends_in_the_body(fold
     assembly = assembly_of(folding)
     assert np.array_equal(last - last[0], assembly.places - assembly.places[0])
     goal = lu.Motion(motion.start, motion.moves, 0.999, 90.0, False, "", goal=assembly.places)
-    assert lu.certify(goal).ok
+    assert lu.certify(goal, joints=assembly.joints).ok
 
 
 def test_rows_come_in_the_order_in_which_blocks_are_done(folding):
@@ -96,6 +100,14 @@ def test_twists_are_those_of_the_judge(folding):
     assert all(action.lays_hinge or action.swings for action in assembly.twisting)
 
 
+def test_a_folding_for_slots_stays_one_and_only_these_need_a_manner(folding):
+    assembly = assembly_of(folding)
+    for_slots = not len(slot_violations(folding.motion))
+    assert (assembly.joints == "slotted") == for_slots
+    manners = [row.manner for row in rows_of(assembly)]
+    assert any(manners) == (for_slots and len(manners) > 2)
+
+
 # Read back
 
 
@@ -103,10 +115,11 @@ def test_the_path_comes_back_exactly_and_its_motion_is_certified(folding, tmp_pa
     for file in written(folding, tmp_path):
         again = lu.read_manual(file)
         assert np.array_equal(again.path.voxels, folding.path.voxels)
-        assert np.array_equal(again.motion.moves, assembly_of(folding).folding.motion.moves)
-        assert lu.certify(again.motion).ok
+        assembly = assembly_of(folding)
+        assert np.array_equal(again.motion.moves, assembly.folding.motion.moves)
+        assert lu.certify(again.motion, joints=assembly.joints).ok
         backwards = reversal(again.motion)
-        assert lu.certify(backwards).ok
+        assert lu.certify(backwards, joints=assembly.joints).ok
         *_, body = lu.frames(backwards)
         assert np.array_equal(body - body[0], folding.path.voxels - folding.path.voxels[0])
 
@@ -131,6 +144,68 @@ def test_any_folding_comes_back(data):
     assert np.array_equal(again.path.voxels, made.path.voxels)
 
 
+def planned(seed, joints="slotted"):
+    """A random path with a motion whose blocks keep to their slots, or, "sparing", mostly do."""
+    rng = np.random.default_rng(seed)
+    voxels = even_walk(rng, int(rng.integers(2, 60)), int(rng.integers(2, 6)))
+    box, cells = plan.path_grid(voxels)
+    bias = float(rng.choice([0.02, 0.5]))
+    states = plan.peel_plan(box, cells, rng, bias=bias, joints=joints)
+    return lu.Folding(lu.VoxelPath(voxels), plan.motion_of(voxels, states, joints))
+
+
+def for_slots(joints="slotted"):
+    """Those of them that end straight, and did not begin so."""
+    return st.builds(planned, seeds, st.just(joints)).filter(
+        lambda made: made.motion.straight and len(made.motion)
+    )
+
+
+def read(rows):
+    """The motion that rows tell of, by way of CSV."""
+    return reading._followed([*parsed(csv_text(rows))], 0.999, 90.0).motion
+
+
+# In some, the ends may not take turns as they might without slots.
+@example(planned(86))
+@example(planned(159))
+@settings(max_examples=60)
+@given(for_slots())
+def test_any_folding_for_slots_comes_back_move_by_move(made):
+    assembly = assembly_of(made)
+    again = read(rows_of(assembly))
+    assert np.array_equal(again.moves, assembly.folding.motion.moves)
+    verdict = lu.certify(again, joints="slotted")
+    assert (verdict.ok, verdict.violations) == (True, 0)
+    document = json.loads(json_text(document_of(assembly, lu.Certificate(True, ""), "")))
+    by_hand = replace(hand(document), goal=assembly.places)
+    assert lu.certify(by_hand, joints="slotted").ok
+
+
+@settings(max_examples=30)
+@given(for_slots("sparing"))
+def test_a_folding_that_twists_few_pieces_comes_back_move_by_move(made):
+    assembly = assembly_of(made)
+    assert np.array_equal(read(rows_of(assembly)).moves, assembly.folding.motion.moves)
+
+
+@settings(max_examples=30)
+@given(for_slots(), st.data())
+def test_a_lost_or_needless_manner_is_noticed(made, data):
+    rows = rows_of(assembly_of(made))
+    k = data.draw(st.integers(0, len(rows) - 1))
+    if rows[k].manner:
+        rows[k] = rows[k].model_copy(update={"manner": ""})
+        said = "(twists|manner) is "
+    else:
+        rows[k] = rows[k].model_copy(
+            update={"manner": data.draw(st.sampled_from(["straighten", "hinge first"]))}
+        )
+        said = "manner is "
+    with pytest.raises(ValueError, match=said):
+        read(rows)
+
+
 def parsed(text):
     for k, entries in enumerate(csv.DictReader(text.splitlines()), start=1):
         yield reading._csv_row(k, entries)
@@ -140,6 +215,7 @@ def parsed(text):
 
 BENDS = ["", "E", "EN", "UU", "SW"]
 ENTRIES = {
+    "manner": ["", "straighten", "hinge first", "gently"],
     "end": ["head", "tail", "base"],
     "frame": ["ENU", "UEN", "WSU"],
     "swings": ["", "1:head:EN", "3:tail:UD", "2:tail:NE 1:head:SU"],
@@ -164,12 +240,11 @@ def test_any_wrong_entry_of_a_row_is_noticed(texts, data):
         wrong = data.draw(st.sampled_from(ENTRIES[name]))
     right = row[name] == wrong
     row[name] = wrong
-    changed = [BlockRow(**row) for row in rows]
     if right:
-        reading._followed(changed, 0.999, 90.0)
+        reading._followed([BlockRow(**row) for row in rows], 0.999, 90.0)
     else:
         with pytest.raises(ValueError, match=r".+"):
-            reading._followed(changed, 0.999, 90.0)
+            reading._followed([BlockRow(**row) for row in rows], 0.999, 90.0)
 
 
 @pytest.mark.parametrize(
@@ -224,6 +299,22 @@ def test_a_wrong_field_of_the_document_is_noticed(texts, tmp_path, name):
     file.write_text(json.dumps(document | {name: change(document[name])}))
     with pytest.raises(ValueError, match=name.rstrip("s")):
         lu.read_manual(file)
+
+
+def test_another_version_is_refused_with_what_to_do(texts, tmp_path):
+    head, *rows = csv.reader(texts[1].splitlines())
+    at = head.index("manner")
+    old = [",".join([*row[:at], *row[at + 1 :]]) for row in (head, *rows)]
+    (tmp_path / "it.csv").write_text("\n".join(old))
+    said = "this program reads version 2 of lineup-manual; write the manual anew"
+    with pytest.raises(ValueError, match=f"it.csv: no column manner: {said}"):
+        lu.read_manual(tmp_path / "it.csv")
+    document = json.loads(texts[0]) | {"version": 1}
+    for row in document["rows"]:
+        del row["manner"]
+    (tmp_path / "it.json").write_text(json.dumps(document))
+    with pytest.raises(ValueError, match=f"it.json: version: 1, and {said}"):
+        lu.read_manual(tmp_path / "it.json")
 
 
 def test_what_is_no_manual_is_refused(tmp_path):

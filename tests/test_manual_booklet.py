@@ -16,7 +16,7 @@ from lineup.manual.assembly import assembly_of
 from lineup.manual.documents import document_of
 
 MM = 72 / 25.4
-LINE = re.compile(r"(head|tail)? +(\d+)(?:-(\d+))?  ([ENUWSD*\- ]+)")
+LINE = re.compile(r"(head|tail)? +(\d+)(?:-(\d+))?  ([ENUWSD*+\- ]+)")
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -139,6 +139,40 @@ def test_a_loose_end_that_hangs_down_is_told_of():
         assert {str(row.stretches[0].first_block), str(row.last_block)} <= numbers
     assert any(told)
     assert not all(told)
+
+
+def test_hinges_that_bend_in_a_manner_of_their_own_are_told_of_on_plan_and_in_words():
+    made = folded((4, 4, 4), 0, "slotted")
+    assembly = assembly_of(made)
+    document = document_of(assembly, lu.certify(made.motion, joints="slotted"), "cube")
+    told = {"straighten": [], "hinge first": []}
+    for row in document.steps:
+        sheet = step_pages.step_page(assembly, row, "cube", "letter", 1, 1)
+        texts = [text.get_text() for text in sheet.axes.texts]
+        said = " ".join(" ".join(texts).split())
+        letters = next(text for text in texts if re.search(r"\d  [ENUWSD-]", text))
+        for sign, manner, what in (
+            ("*", "straighten", "straighten the hinge"),
+            ("+", "hinge first", "bend the hinge first"),
+        ):
+            blocks = [r.block for r in document.rows if (r.step, r.manner) == (row.step, manner)]
+            listed = re.findall(rf"Blocks? ([\d, ]+): {what}", said)
+            listed = [int(block) for block in ", ".join(listed).split(", ") if block]
+            assert sorted(listed) == sorted(blocks)
+            assert letters.count(sign) == texts.count(sign) == len(blocks)
+            told[manner] += listed
+    assert all(told.values())
+
+
+def test_the_cover_says_for_which_joints_it_is_certified():
+    told = []
+    for joints in ("free", "slotted"):
+        made = folded((3, 3, 4), 0, joints)
+        cover = lu.manual_pages(made, [1])[0].axes[0].texts
+        told.append(" ".join(" ".join(text.get_text() for text in cover).split()))
+    assert "which the certificate does not cover" in told[0]
+    assert "No piece is twisted in its slots if the 2 hinges marked * or + bend as told" in told[1]
+    assert all("CERTIFIED From" in text for text in told)
 
 
 def test_a_motion_that_the_judge_refuses_is_told_on_the_cover(tmp_path):
@@ -279,11 +313,12 @@ def test_the_command_writes_and_tells(tmp_path, capsys):
     assert cli.run(["manual", str(file), "--paper", "a5"]) == 2
 
 
-def test_a_document_of_nothing_certified_still_says_why(tmp_path):
+def test_a_document_of_nothing_certified_still_says_why():
     assembly = assembly_of(a_folding())
     verdict = lu.Certificate(False, "for a reason", 3)
     assert document_of(assembly, verdict, "x").verdict.model_dump() == {
         "ok": False,
+        "joints": "slotted",
         "reason": "for a reason",
         "where": 3,
         "clearance": None,

@@ -7,24 +7,26 @@ import networkx as nx
 import numpy as np
 import pytest
 from chains import walk
-from hands import BOXES, folded
+from hands import BOXES, folded, named
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from test_slots import twisting_peels
 
 import lineup as lu
 from lineup import grid
 from lineup.manual import build, grade, turns
-from lineup.manual.actions import Action, actions_of
+from lineup.manual.actions import HINGE_FIRST, Action, actions_of
 from lineup.manual.assembly import assembly_of
 from lineup.manual.documents import document_of
 from lineup.manual.grade import grade_of
 from lineup.manual.steps import LEAST, MOST, MOST_BY_BOTH, MOST_LAYERS, steps_of
 from lineup.motion._chain import link
 from lineup.motion._search import keeps_rules
-from lineup.motion.plan import path_grid, rod_states
+from lineup.motion._slots import may_detour, may_swap, plan_keeps_slots
+from lineup.motion.plan import path_grid, rod_plan
 
 
-@pytest.fixture(scope="module", params=BOXES, ids=lambda box: "x".join(map(str, box[0])))
+@pytest.fixture(scope="module", params=BOXES, ids=named)
 def folding(request):
     return folded(*request.param)
 
@@ -37,9 +39,12 @@ def test_actions_undo_the_motion_move_by_move(folding):
     poses = list(lu.frames(folding.motion))
     voxels = folding.path.voxels
     a, b = base
-    for action in (None, *actions):
+    for action, after in pairwise((None, *actions, None)):
         if action and not action.swings:
             a, b = min(a, action.joint), max(b, action.joint)
+        if after and after.manner == HINGE_FIRST:  # the piece comes into place together with it
+            assert (action.joint, action.moves) == (after.before, after.moves + 1)
+            continue
         pose = poses[action.moves] if action else poses[-1]
         assert np.array_equal(pose[a : b + 1] - pose[a], voxels[a : b + 1] - voxels[a])
         for rod in (pose[b:], pose[: a + 1]):
@@ -107,25 +112,46 @@ def test_steps_are_of_a_size_that_a_hand_does_at_a_time(data):
 # The ends take turns
 
 
+@given(twisting_peels())
+@settings(max_examples=100)
+def test_an_end_that_needs_two_moves_for_the_slots_makes_both_or_none(case):
+    voxels, state, end, capsule = case
+    box, cells = path_grid(voxels)
+    chain = link(box, cells)
+    joints = state[end] + np.arange(3) * (1, -1)[end]
+    way = np.stack([joints, np.full(3, state[2 + end])], axis=1).astype(np.int32)
+    then_swings = way.copy()
+    then_swings[2] = way[1, 0], (way[1, 1] + 1) % 6
+    alone = int(may_detour(box, chain, state, end, capsule))
+    both = 1 if alone else 2 if may_swap(box, chain, state, end) else 0
+    assert turns._at_once(box, chain, state, end, way, True) == both
+    for other in (way[:2], then_swings):
+        assert turns._at_once(box, chain, state, end, other, True) == alone
+    assert turns._at_once(box, chain, state, end, way, False) == 1
+    assert turns._at_once(box, chain, state, end, way[:1], True) == 0
+
+
+@pytest.mark.parametrize("joints", ["free", "slotted"])
 @pytest.mark.parametrize("seed", range(6))
-def test_ends_change_as_seldom_as_the_rules_let_them(seed):
-    made = folded((3, 3, 2), seed)
-    states = rod_states(made.motion)
+def test_ends_change_as_seldom_as_the_rules_let_them(seed, joints):
+    made = folded((3, 3, 2), seed, joints)
+    states, _ = rod_plan(made.motion)
     ways = [turns._way(states, end) for end in (0, 1)]
     cells = path_grid(made.path.voxels)
     chain = link(*cells)
     graph = nx.DiGraph()
     last = tuple(len(way) - 1 for way in ways)
     for i, j in np.ndindex(*(len(way) for way in ways)):
-        for end in (0, 1):
-            to = (i + 1, j) if end == 0 else (i, j + 1)
+        for end, n in ((0, 1), (1, 1), (0, 2), (1, 2)):
+            run = [(i + k, j) if end == 0 else (i, j + k) for k in range(n + 1)]
+            to = run[-1]
             if to[end] > last[end]:
                 continue
-            pair = [
-                (*ways[0][p][:1], *ways[1][q][:1], ways[0][p][1], ways[1][q][1])
-                for p, q in ((i, j), to)
-            ]
-            if keeps_rules(cells[0], chain, np.array(pair, np.int32)):
+            passed = [(ways[0][p][0], ways[1][q][0], ways[0][p][1], ways[1][q][1]) for p, q in run]
+            passed = np.array(passed, np.int32)
+            if keeps_rules(cells[0], chain, passed) and (
+                joints == "free" or plan_keeps_slots(cells[0], chain, passed)
+            ):
                 for before in (0, 1):
                     change = turns._change(int(ways[before][(i, j)[before], 0]), before)
                     cost = change if before != end and (i, j) != (0, 0) else 0
@@ -139,16 +165,23 @@ def test_ends_change_as_seldom_as_the_rules_let_them(seed):
         and graph.has_node(goal)
         and nx.has_path(graph, (0, 0, start), goal)
     )
-    ends = turns._fewest(cells[0], chain, *ways)
+    ends = turns._fewest(cells[0], chain, *ways, joints == "slotted")
     assert turns._cost(turns._states(ends, ways)) == least
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_another_order_of_the_ends_is_certified_and_final(seed):
-    motion = folded((4, 3, 2), seed).motion
+@pytest.mark.parametrize(
+    ("box", "changes"),
+    [
+        *[(((4, 3, 2), 0), False), (((4, 3, 2), 1), True), (((4, 3, 2), 2), False)],
+        *[((*box, "slotted"), True) for box in (((4, 4, 4), 0), ((3, 3, 5), 0))],
+    ],
+)
+def test_another_order_of_the_ends_is_certified_and_final(box, changes):
+    motion = folded(*box).motion
     ordered = turns.with_few_turns(motion)
-    assert lu.certify(ordered).ok
-    assert turns._cost(rod_states(ordered)) <= turns._cost(rod_states(motion))
+    assert (ordered is not motion) == changes
+    assert lu.certify(ordered, joints=[*box, "free"][2]).ok
+    assert turns._cost(rod_plan(ordered)[0]) <= turns._cost(rod_plan(motion)[0])
     assert turns.with_few_turns(ordered) is ordered
     assert ordered.straight
     assert np.array_equal(ordered.start, motion.start)

@@ -6,6 +6,7 @@ import re
 import numpy as np
 import pytest
 from contracts import check_motion
+from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles import lattice_quadrant, lattice_ray, rod_fault, rod_rule
@@ -54,6 +55,7 @@ def random_walk(rng, n, side=3, banned=()):
 seeds = st.integers(0, 2**32 - 1)
 
 
+@examples(400)
 @given(seeds, st.integers(2, 40), st.integers(0, 5))
 def test_accordion_only_moves_points_apart(seed, n, against):
     voxels = random_walk(np.random.default_rng(seed), n, side=7, banned=[against])
@@ -107,16 +109,16 @@ def check_peeled(voxels, motion):
 
 
 @given(polycubes(60), st.integers(0, 9))
-@settings(max_examples=40)
+@examples(80)
 def test_peel_of_layered_paths(occupancy, seed):
     if occupancy.sum() < 2:
         return
-    path = lu.layered_path(lu.VoxelSolid(occupancy), seed=seed)
+    path = lu.layered_path(lu.VoxelSolid(occupancy), seed=seed, starts=1)
     check_peeled(path.voxels, lu.unfold(path, method="peel", seed=seed, tries=3))
 
 
 @given(seeds, st.integers(2, 27))
-@settings(max_examples=60)
+@examples(240)
 def test_peel_of_walks_packed_in_a_box(seed, n):
     voxels = random_walk(np.random.default_rng(seed), n)
     if len(voxels) < 2:
@@ -233,7 +235,7 @@ def allowed(box, chain, old, new):
 
 
 @given(seeds, st.integers(3, 16))
-@settings(max_examples=25)
+@examples(100)
 def test_the_kernels_allow_exactly_the_steps_that_the_rules_do(seed, n):
     rng = np.random.default_rng(seed)
     voxels = random_walk(rng, n)
@@ -287,7 +289,7 @@ def least_folded(voxels):
 
 
 @given(seeds, st.integers(2, 24))
-@settings(max_examples=40)
+@examples(160)
 def test_search_gets_as_far_as_any_plan(seed, n):
     voxels = random_walk(np.random.default_rng(seed), n)
     if len(voxels) < 2:
@@ -316,7 +318,7 @@ def test_search_finds_the_swings_that_a_path_needs(word, seed):
 
 
 @given(seeds, st.integers(2, 60), st.sampled_from([0.02, 0.5, 0.98]))
-@settings(max_examples=60)
+@examples(240)
 def test_plans_keep_the_rules_and_come_back_from_their_motions(seed, n, bias):
     rng = np.random.default_rng(seed)
     voxels = random_walk(rng, n, side=4)
@@ -352,7 +354,7 @@ def legal_play(rng, voxels, spare):
 
 
 @given(seeds, st.integers(2, 12), st.integers(0, 3))
-@settings(max_examples=100)
+@examples(240)
 def test_whatever_is_legal_comes_back_from_its_motion(seed, n, spare):
     rng = np.random.default_rng(seed)
     voxels = random_walk(rng, n, side=4)

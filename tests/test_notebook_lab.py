@@ -1,12 +1,13 @@
 """The first notebooks in JupyterLab: sliders where a person runs them, still pictures before."""
 
 import shutil
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 from browser import BROWSER
 
-for package in ("playwright.sync_api", "ipywidgets", "jupyterlab"):
+for package in ("playwright.sync_api", "ipywidgets"):
     pytest.importorskip(package)
 
 from laboratory import opener, run  # noqa: E402
@@ -14,6 +15,7 @@ from laboratory import opener, run  # noqa: E402
 pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(BROWSER is None, reason="no Chromium is installed"),
+    pytest.mark.skipif(find_spec("jupyterlab") is None, reason="no JupyterLab is installed"),
 ]
 
 NOTEBOOKS = Path(__file__).parents[1] / "notebooks"

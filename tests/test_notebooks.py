@@ -7,10 +7,6 @@ from pathlib import Path
 
 import pytest
 
-nbclient = pytest.importorskip("nbclient")
-nbformat = pytest.importorskip("nbformat")
-jupytext = pytest.importorskip("jupytext")
-
 FOLDER = Path(__file__).parents[1] / "notebooks"
 NAMES = sorted(file.stem for file in FOLDER.glob("*.py"))
 
@@ -18,6 +14,7 @@ NAMES = sorted(file.stem for file in FOLDER.glob("*.py"))
 @pytest.fixture(scope="module")
 def kernel():
     """One Jupyter kernel for all notebooks, for it takes as long to start as they take to run."""
+    nbclient, nbformat = map(pytest.importorskip, ("nbclient", "nbformat"))
     client = nbclient.NotebookClient(nbformat.v4.new_notebook(), timeout=600, kernel_name="python3")
     with client.setup_kernel(cwd=str(FOLDER), env=os.environ | {"LINEUP_QUICK": "1"}):
         yield client
@@ -25,6 +22,8 @@ def kernel():
 
 def run(notebook, kernel):
     """Run a notebook from top to bottom where nothing is defined."""
+    import nbformat
+
     emptying = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell("%reset -f")])
     for kernel.nb in (emptying, notebook):
         kernel.reset_execution_trackers()
@@ -35,6 +34,7 @@ def run(notebook, kernel):
 @pytest.mark.notebook
 @pytest.mark.parametrize("name", NAMES)
 def test_a_notebook_runs(name, kernel):
+    jupytext = pytest.importorskip("jupytext")
     notebook = jupytext.read(FOLDER / f"{name}.py")
     run(notebook, kernel)
     pictures = [
@@ -49,6 +49,9 @@ def test_a_notebook_runs(name, kernel):
 
 @pytest.mark.notebook
 def test_what_a_notebook_does_not_define_it_does_not_have(kernel):
+    import nbclient
+    import nbformat
+
     cells = [nbformat.v4.new_code_cell(source) for source in ("seen = 1", "seen")]
     run(nbformat.v4.new_notebook(cells=cells), kernel)
     with pytest.raises(nbclient.exceptions.CellExecutionError, match="NameError"):

@@ -5,7 +5,8 @@ import os
 import numpy as np
 import pytest
 from contracts import check_path
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from oracles import outermost_boundary, without_dangling
 from polycubes import blob, polycubes
@@ -42,7 +43,7 @@ class Layer:
         self.inner = self.kept - self.boundary
 
 
-@settings(max_examples=60, deadline=None)
+@examples(100)
 @given(solids, st.integers(0, 3))
 def test_paths_are_certified_and_every_node_is_accounted_for(solid, seed):
     if solid.size < 2:
@@ -72,7 +73,7 @@ def test_paths_are_certified_and_every_node_is_accounted_for(solid, seed):
     assert found.path.method == said.format(*counts)
 
 
-@settings(max_examples=30, deadline=None)
+@examples(60)
 @given(st.integers(0, 2**32).map(blob).map(lu.VoxelSolid), st.integers(0, 3))
 def test_algorithm_2_keeps_what_the_paper_says_and_ends_where_it_says(solid, seed):
     found = lu.algorithm3(solid, seed)

@@ -26,9 +26,9 @@ def check_design(design, blocks):
 def test_names_files_meshes_and_solids_become_poses_of_one_chain(tmp_path):
     ball = trimesh.creation.icosphere()
     ball.export(tmp_path / "ball.ply")
-    sources = ["mug", tmp_path / "ball.ply", ball, lu.VoxelSolid(np.ones((5, 5, 5), bool))]
-    design = lu.lineup(sources, blocks=50)
-    check_design(design, 50)
+    sources = ["mug", tmp_path / "ball.ply", ball, lu.VoxelSolid(np.ones((4, 4, 4), bool))]
+    design = lu.lineup(sources, blocks=30)
+    check_design(design, 30)
     assert design.table["model"].tolist() == ["mug", "ball", "model3", "model4"]
     assert design.table["certified"].all()
 

@@ -5,7 +5,8 @@ import itertools
 import networkx as nx
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from oracles import heaviest_path_between
 from regions import draw_ends, grown_regions
@@ -55,7 +56,7 @@ def check_path(region, path, start, end):
     assert set(np.abs(np.diff(path)).tolist()) <= {1, region.width}
 
 
-@settings(max_examples=150, deadline=None)
+@examples(440)
 @given(regions(), st.data())
 def test_small_regions_are_solved_to_the_optimum(region, data):
     start, end = ends_of(data, region)
@@ -67,7 +68,7 @@ def test_small_regions_are_solved_to_the_optimum(region, data):
     assert score == best <= limit
 
 
-@settings(max_examples=60, deadline=None)
+@examples(160)
 @given(regions(40), st.data())
 def test_blocks_are_those_of_networkx(region, data):
     graph = graph_of(region)
@@ -89,7 +90,7 @@ def test_blocks_are_those_of_networkx(region, data):
     assert all(a[2] == b[1] for a, b in itertools.pairwise(chain))
 
 
-@settings(max_examples=60, deadline=None)
+@examples(120)
 @given(regions(30), st.integers(0, 9))
 def test_toggles_keep_one_path_and_cycles(region, seed):
     """The change in cycles and weight that each toggle reports, against a recount."""
@@ -124,7 +125,7 @@ def test_strands_are_followed_as_far_as_asked(seed):
     board = laid_board(region, *region.cells[[0, -1]].tolist(), rng)
     squares = np.flatnonzero(board.is_square)
     n_known, n_unknown = 0, 0
-    for square in rng.choice(squares, 3000).tolist():
+    for square in rng.choice(squares, 1000).tolist():
         _search.propose(board, square, 1.0, 0.2, rng)
         pattern = _board.sides(board, square)
         if pattern in (5, 10):
@@ -227,7 +228,7 @@ ONE_CELL_APART = np.array([[True, False, True]])
 
 
 @pytest.mark.parametrize("method", ["long", "paper"])
-@settings(max_examples=60, deadline=None)
+@examples(240)
 @given(grown_regions(40), st.data())
 def test_planar_paths_keep_their_bound(method, mask, data):
     start, end = draw_ends(data, mask)

@@ -3,6 +3,7 @@
 import networkx as nx
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles import outermost_boundary, two_factors, without_dangling
@@ -25,7 +26,7 @@ def rows(cells):
     return set(map(tuple, np.asarray(cells).tolist()))
 
 
-@settings(max_examples=200, deadline=None)
+@examples(200)
 @given(grown_regions(60) | smooth_regions(), st.integers(0, 99), st.data())
 def test_each_step_is_what_the_paper_defines(mask, seed, data):
     start, end = draw_ends(data, mask)
@@ -61,7 +62,7 @@ def interior_of(mask):
     return ndimage.binary_erosion(mask, np.ones((3, 3)))
 
 
-@settings(max_examples=150, deadline=None)
+@examples(200)
 @given(smooth_regions(), st.integers(0, 99), st.data())
 def test_paths_join_their_ends_and_keep_the_boundary(mask, seed, data):
     start, end = draw_ends(data, interior_of(mask))
@@ -79,7 +80,7 @@ def test_paths_join_their_ends_and_keep_the_boundary(mask, seed, data):
     assert len(found) == len(found.boundary) + len(found.interior)
 
 
-@settings(max_examples=100, deadline=None)
+@examples(160)
 @given(smooth_regions(), st.data())
 def test_cycles_are_cycles_and_long_enough(mask, data):
     """The bound of Zhang and Liu, on every region that meets their hypotheses."""
@@ -136,7 +137,7 @@ def test_walks_round_faces_meet_exactly_the_boundary_voxels(mask):
         assert (steps == 1).all() or len(walk) == 1
 
 
-@settings(max_examples=150, deadline=None)
+@examples(360)
 @given(st.integers(0, 2**32), st.integers(4, 16))
 def test_square_free_factors_exist_where_they_are_found(seed, n_cells):
     rng = np.random.default_rng(seed)

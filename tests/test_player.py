@@ -1,4 +1,8 @@
-"""The player in a real browser: what is drawn, pressed and picked, with WebGL and without."""
+"""The player in a real browser: what is drawn, pressed and picked, with WebGL and without.
+
+By default a browser only shows that the page comes up and obeys; `test_viewer.py` has the rest of
+what needs none.
+"""
 
 import dataclasses
 import functools
@@ -65,7 +69,7 @@ def pages(engine, browser, file):
         page.close() if kind == "webgl" else page.context.browser.close()
 
 
-@pytest.fixture(params=["webgl", "flat"])
+@pytest.fixture(params=["webgl", pytest.param("flat", marks=pytest.mark.slow)])
 def kind(request):
     return request.param
 
@@ -105,6 +109,7 @@ def test_the_first_picture_is_there_and_nothing_else_is_asked_for(view, file, ki
     np.testing.assert_array_equal(pose(view), folding.path.voxels)
 
 
+@pytest.mark.slow
 def test_pictures_change_with_time_and_not_otherwise(view):
     first = shot(view)
     ask(view, "p.show(12.5)")
@@ -114,6 +119,7 @@ def test_pictures_change_with_time_and_not_otherwise(view):
     assert alike(shot(view), first)
 
 
+@pytest.mark.slow
 def test_the_picture_keeps_its_size_whatever_is_said(view):
     for width in (360, 720, 1000):
         view.set_viewport_size({"width": width, "height": 640})
@@ -148,6 +154,7 @@ def test_keys_lead_through_the_motion_to_the_straight_line(view, folding):
     assert view.inner_text(".where").startswith("Straight after 32 moves")
 
 
+@pytest.mark.slow
 def test_the_slider_leads_too(one):
     slider = one.locator("input.time")
     box = slider.bounding_box()
@@ -158,6 +165,7 @@ def test_the_slider_leads_too(one):
     assert slider.get_attribute("aria-valuetext").startswith("Move 18 of 32")
 
 
+@pytest.mark.slow
 def test_play_runs_to_the_end_and_back(one):
     ask(one, "p.setSpeed(80)")
     one.get_by_role("button", name="Play").click()
@@ -172,6 +180,7 @@ def test_play_runs_to_the_end_and_back(one):
     until(one, "p.state.time === 0")
 
 
+@pytest.mark.slow
 def test_a_film_is_one_picture_a_frame_and_then_rests(view):
     ask(view, "p.setSpeed(60)")
     drawn, shown = view.evaluate("""async () => {
@@ -212,6 +221,7 @@ def nearest_block(page):
     return 2 * block, float(left), float(top)
 
 
+@pytest.mark.slow
 def test_a_click_picks_the_block_under_it(view, folding):
     bar, x, y = nearest_block(view)
     before = shot(view)
@@ -231,6 +241,7 @@ def test_a_click_picks_the_block_under_it(view, folding):
     assert view.locator(".card").is_hidden()
 
 
+@pytest.mark.slow
 def test_dragging_turns_the_picture_and_picks_nothing(view):
     before = shot(view)
     view.mouse.move(360, 200)
@@ -244,6 +255,7 @@ def test_dragging_turns_the_picture_and_picks_nothing(view):
     assert alike(shot(view), before)
 
 
+@pytest.mark.slow
 def test_details_say_what_the_judge_said(one):
     one.get_by_role("button", name="Details").click()
     drawer = one.inner_text(".drawer")
@@ -258,6 +270,7 @@ def test_details_say_what_the_judge_said(one):
     assert one.inner_text(".legend").split() == ["0", "34"]
 
 
+@pytest.mark.slow
 def test_a_picture_can_be_kept(one):
     one.get_by_role("button", name="Details").click()
     with one.expect_download() as coming:
@@ -267,6 +280,7 @@ def test_a_picture_can_be_kept(one):
     assert colourful(kept) > 0.05
 
 
+@pytest.mark.slow
 def test_a_link_leads_to_its_moment(fresh, file):
     ask(fresh, "p.show(7.25)")
     fresh.get_by_role("button", name="Details").click()
@@ -277,6 +291,7 @@ def test_a_link_leads_to_its_moment(fresh, file):
     assert ask(fresh, "p.state.time") == 7.25
 
 
+@pytest.mark.slow
 def test_a_lost_picture_comes_back(one):
     before = shot(one)
     one.evaluate("""async () => {
@@ -298,6 +313,7 @@ def fresh(browser, file):
     page.close()
 
 
+@pytest.mark.slow
 def test_slow_machines_get_coarser_pictures_and_then_flat_ones(fresh):
     sides = []
     for _ in range(4):
@@ -311,6 +327,7 @@ def test_slow_machines_get_coarser_pictures_and_then_flat_ones(fresh):
     assert ask(fresh, "p.state.picked") == bar
 
 
+@pytest.mark.slow
 def test_on_a_phone_nothing_sticks_out(browser, file):
     page = browser.new_page(viewport={"width": 360, "height": 640})
     page.goto(file.as_uri())
@@ -361,6 +378,7 @@ def test_over_the_web_it_is_one_request_too(browser, file):
     assert Quiet.asked == [f"/{file.name}"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [
@@ -385,6 +403,7 @@ def test_a_page_that_was_damaged_says_what_is_wrong(browser, file, tmp_path, old
     page.close()
 
 
+@pytest.mark.slow
 def test_a_name_is_text_and_nothing_else(browser, folding, tmp_path):
     name = "</script><script>window.hurt=1</script><img src=x onerror=window.hurt=1>&amp;"
     refused = dataclasses.replace(

@@ -1,15 +1,14 @@
 """The player in JupyterLab: run in a cell, led by hand and from Python, and in a saved notebook."""
 
+from importlib.util import find_spec
+
 import numpy as np
 import pytest
 from browser import BROWSER, colourful, seen
 
 import lineup as lu
 
-pytest.importorskip("playwright.sync_api")
-nbclient = pytest.importorskip("nbclient")
-nbformat = pytest.importorskip("nbformat")
-for package in ("anywidget", "jupyterlab"):
+for package in ("playwright.sync_api", "anywidget"):
     pytest.importorskip(package)
 
 from laboratory import opener, run  # noqa: E402
@@ -17,6 +16,7 @@ from laboratory import opener, run  # noqa: E402
 pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(BROWSER is None, reason="no Chromium is installed"),
+    pytest.mark.skipif(find_spec("jupyterlab") is None, reason="no JupyterLab is installed"),
 ]
 
 PLAYER = "document.querySelector('.lineup-player')?.player"
@@ -25,6 +25,7 @@ PLAYER = "document.querySelector('.lineup-player')?.player"
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     """Two equal notebooks, of which `saved` was run by nbclient, as `make notebooks` does."""
+    nbclient, nbformat = map(pytest.importorskip, ("nbclient", "nbformat"))
     folder = tmp_path_factory.mktemp("lab")
     folding = lu.fold(lu.VoxelSolid(np.ones((4, 3, 3), bool)), rounds=50, trial_rounds=10)
     file = lu.save(folding, folder / "block.folding.json")

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from contracts import NOT_STRAIGHT
+from examples import examples
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
@@ -63,7 +64,7 @@ def tracks(draw, max_bars=16, max_pulls=8, u_free=False):
     return np.array(track[: n_bars + 1]), word
 
 
-@settings(max_examples=30, deadline=None)
+@examples(80)
 @given(st.booleans().flatmap(lambda u_free: tracks(u_free=u_free)), st.booleans())
 def test_the_lemma_holds_on_every_track(track, by_first):
     """All pairs of bars at many phases keep what the judge says, and so do all bends."""
@@ -246,7 +247,7 @@ def check_pulled(motion):
     assert len({tuple(row) for row in motion.moves[:, 1:3]}) <= 1
 
 
-@settings(max_examples=40, deadline=None)
+@examples(80)
 @given(polycubes(60), st.integers(0, 9))
 def test_a_chain_is_pulled_out_wherever_a_way_leads_out(occupancy, seed):
     assume(occupancy.sum() > 1)

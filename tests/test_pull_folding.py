@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from contracts import check_path
-from hypothesis import assume, given, settings
+from examples import examples
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from oracles import n_us
 from polycubes import polycubes
@@ -38,7 +39,7 @@ def check_pulled(folding, solid):
 
 
 @given(polycubes(80), st.integers(0, 9), st.data())
-@settings(max_examples=10, deadline=None)
+@examples(40)
 def test_a_path_without_us_is_pulled_out_whole_and_trimmed(occupancy, seed, data):
     assume(occupancy.sum() > 1)
     solid = lu.VoxelSolid(occupancy)
@@ -52,7 +53,7 @@ def test_a_path_without_us_is_pulled_out_whole_and_trimmed(occupancy, seed, data
 
 
 @given(polycubes(80), st.integers(0, 9), st.data())
-@settings(max_examples=10, deadline=None)
+@examples(40)
 def test_any_path_that_has_a_way_out_is_pulled_out_and_trimmed(occupancy, seed, data):
     assume(occupancy.sum() > 1)
     solid = lu.VoxelSolid(occupancy)
@@ -68,14 +69,14 @@ def test_any_path_that_has_a_way_out_is_pulled_out_and_trimmed(occupancy, seed, 
 
 def test_trimming_keeps_the_surface_while_it_can():
     """Inside a block there is enough to contract, without a U."""
-    solid = lu.VoxelSolid(np.ones((8, 8, 8), bool))
+    solid = lu.VoxelSolid(np.ones((7, 7, 6), bool))
     folding = lu.fold(solid, method="pull", sweeps=300)
     kept = grid.surface(solid.occupancy)
     before = kept[tuple(folding.path.voxels.T)].sum()
     (shorter,) = lu.trim([folding], len(folding.path) - 12)
     assert kept[tuple(shorter.path.voxels.T)].sum() == before
     assert "12 voxels in pairs, 0 in excursions and 0 off the ends" in shorter.path.method
-    for length in range(len(folding.path) - 12, 40, -52):
+    for length in range(len(folding.path) - 12, 20, -52):
         (shorter,) = lu.trim([folding], length)
         assert (len(shorter.path), n_us(shorter.path.voxels)) == (length, 0)
         check_pulled(shorter, solid)

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from contracts import check_path
+from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles import edges_on_squares, simple_paths_from, voxel_graph
@@ -88,14 +89,14 @@ def test_small_solids(name):
     check_refined4(lu.layered_path(solid, "refined4"), solid)
 
 
-@settings(max_examples=300)
+@examples(300)
 @given(polycubes(60), st.integers(0, 99))
 def test_refined_leaves_out_nothing(occupancy, seed):
     solid = lu.VoxelSolid(occupancy)
     check_refined(lu.layered_path(solid, "refined", seed), solid)
 
 
-@settings(max_examples=100)
+@examples(120)
 @given(polycubes(20), st.integers(0, 99))
 def test_refined4_leaves_out_nothing_and_has_no_u(occupancy, seed):
     solid = lu.VoxelSolid(occupancy)

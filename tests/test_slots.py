@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 import pytest
 from contracts import check_folding, check_motion
+from examples import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from oracles import lattice_ray, rod_fault, rod_rule
@@ -54,7 +55,7 @@ def judged(motion):
 
 
 @given(seeds, st.integers(4, 30))
-@settings(max_examples=15)
+@examples(40)
 def test_what_twists_is_what_the_judge_says(seed, n):
     rng = np.random.default_rng(seed)
     voxels = even_walk(rng, n)
@@ -114,7 +115,7 @@ def twisting_peels(draw):
 
 
 @given(twisting_peels())
-@settings(max_examples=40)
+@examples(80)
 def test_swaps_and_detours_with_room_are_free_and_keep_to_the_slots(case):
     voxels, state, end, capsule = case
     box, chain = chain_of(voxels)
@@ -196,7 +197,7 @@ def tail_from(start, end):
 
 
 @given(seeds, st.integers(2, 60), st.integers(2, 5))
-@settings(max_examples=60)
+@examples(220)
 def test_slotted_plans_are_kept_and_come_back_from_their_motions(seed, n, side):
     rng = np.random.default_rng(seed)
     voxels = even_walk(rng, n, side)
@@ -249,7 +250,7 @@ def two_peels(box, chain, state, step, end):
 
 
 @given(seeds, st.integers(4, 18))
-@settings(max_examples=15)
+@examples(40)
 def test_the_search_gets_as_far_as_any_plan_in_slots(seed, n):
     voxels = even_walk(np.random.default_rng(seed), n, side=3)
     assume(len(voxels) > 3)

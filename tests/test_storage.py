@@ -6,6 +6,7 @@ import json
 import numpy as np
 import pandas as pd
 import pytest
+from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from polycubes import polycubes
@@ -76,12 +77,14 @@ def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("storage")
 
 
+@examples(280)
 @given(polycubes(30), st.floats(1e-6, 1e6), st.text(st.characters(codec="utf-8"), max_size=10))
 def test_solid_round_trip(folder, occupancy, pitch, name):
     source = {"file": name, "dropped": 3, "iou": 0.25, "up": None, "axes": [1, 2]}
     round_trip(lu.VoxelSolid(occupancy, pitch, name, source), folder)
 
 
+@examples(360)
 @given(ORIGINS, WORDS, st.integers(1, 4))
 def test_path_round_trip(folder, origin, word, refinement):
     voxels = notation.positions(origin, word)
@@ -89,6 +92,7 @@ def test_path_round_trip(folder, origin, word, refinement):
     round_trip(lu.VoxelPath(voxels, visits, voxels[:2] + 7, refinement, "layered"), folder)
 
 
+@examples(120)
 @given(motions())
 def test_motion_and_folding_round_trip(folder, motion):
     round_trip(motion, folder)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from strands import LEANING, TRIPOD, level, path, walk
@@ -140,7 +141,7 @@ def test_the_chain_alone_bears_what_statics_says(seed, length):
 # Balance
 
 
-@settings(max_examples=25)
+@examples(80)
 @given(
     st.integers(0, 10**6), st.sampled_from(sorted(BONDINGS)), st.sampled_from(["+z", "-y", "+x"])
 )

@@ -5,6 +5,7 @@ from itertools import permutations, product
 
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.optimize import minimize_scalar
@@ -172,6 +173,7 @@ def test_factors_of_parts_solve_the_system(bonding, small, monkeypatch):
     np.testing.assert_allclose(found, expected, rtol=1e-7, atol=1e-9 * np.abs(expected).max())
 
 
+@examples(260)
 @given(st.integers(0, 10**6), st.integers(10, 60))
 def test_parts_are_cut_apart(seed, length):
     voxels = walk(seed, length, (5, 4, 5))

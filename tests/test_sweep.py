@@ -136,7 +136,7 @@ if __name__ == "__main__":
 """
 
 
-def test_a_killed_run_loses_nothing_that_was_done(calls, tmp_path):
+def test_a_killed_run_loses_nothing_that_was_done(calls, tmp_path, monkeypatch):
     script = tmp_path / "script.py"
     script.write_text(SWEEP)
     environment = os.environ | {"PYTHONPATH": PLACES}
@@ -149,6 +149,7 @@ def test_a_killed_run_loses_nothing_that_was_done(calls, tmp_path):
     run.communicate(timeout=20)
     time.sleep(0.5)  # what its processes had begun
     before = calls()
+    monkeypatch.setattr(fake_tasks, "PAUSE", 0)
     whole = experiment("slow", blocks=range(1, 13))
     told = []
     table = run_sweep(whole, tmp_path / "out", progress=lambda *said: told.append(said))

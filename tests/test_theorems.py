@@ -7,7 +7,8 @@ import networkx as nx
 import numpy as np
 import pytest
 from contracts import check_path
-from hypothesis import assume, given, settings
+from examples import examples
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from oracles import longest_path, outermost_boundary, voxel_graph
 from polycubes import blob, polycubes
@@ -32,7 +33,7 @@ def enlarged(occupancy, side, height):
     return np.kron(occupancy, np.ones((side, side, height), bool))
 
 
-@settings(max_examples=30, deadline=None)
+@examples(60)
 @given(st.integers(0, 2**32).map(blob).map(lu.VoxelSolid), st.integers(0, 9))
 def test_theorems_4_2_and_4_3_every_planar_path_is_even(solid, seed):
     """In every node whose ends could be drawn as specified, on the MSP and in MSCs."""
@@ -43,7 +44,7 @@ def test_theorems_4_2_and_4_3_every_planar_path_is_even(solid, seed):
     assert (nodes["covered"][nodes["reasons"].str.contains("ends-alike")] % 2 == 1).all()
 
 
-@settings(max_examples=60, deadline=None)
+@examples(80)
 @given(polycubes(5), st.sampled_from([4, 6, 8]), st.integers(1, 2), st.integers(0, 99))
 def test_theorem_4_4_where_every_node_runs_as_written(occupancy, side, height, seed):
     solid = lu.VoxelSolid(enlarged(occupancy, side, height))

@@ -5,7 +5,8 @@ import re
 
 import numpy as np
 import pytest
-from hypothesis import Phase, assume, given, settings
+from examples import examples
+from hypothesis import Phase, assume, given
 from hypothesis import strategies as st
 from oracles import contraction_outcomes, disjoint_subsets, least_losses
 from polycubes import STEPS, polycubes
@@ -120,7 +121,7 @@ def test_a_pair_around_a_voxel_that_must_stay_is_none():
     assert len(contraction_pairs(path, keep)) == 0
 
 
-@settings(max_examples=60, deadline=None)
+@examples(80)
 @given(polycubes(40), st.integers(0, 3), st.randoms(use_true_random=False))
 def test_pairs_are_those_of_the_definition(occupancy, seed, random):
     solid = lu.VoxelSolid(occupancy)
@@ -134,7 +135,7 @@ def test_pairs_are_those_of_the_definition(occupancy, seed, random):
         assert contraction_pairs(path, mask).tolist() == pairs_by_definition(path, mask)
 
 
-@settings(max_examples=60, deadline=None)
+@examples(80)
 @given(polycubes(60), st.data())
 def test_a_path_of_any_solid_is_trimmed_to_any_even_length(occupancy, data):
     solid = lu.VoxelSolid(occupancy)
@@ -145,7 +146,7 @@ def test_a_path_of_any_solid_is_trimmed_to_any_even_length(occupancy, data):
     check_trimmed(lu.trim([path], length)[0], path, solid, length)
 
 
-@settings(max_examples=25, deadline=None, phases=NO_SHRINKING)
+@examples(48, phases=NO_SHRINKING)
 @given(polycubes(60), st.data())
 def test_a_folding_of_any_solid_is_trimmed_and_stays_certified(occupancy, data):
     solid = lu.VoxelSolid(occupancy)
@@ -159,7 +160,7 @@ def test_a_folding_of_any_solid_is_trimmed_and_stays_certified(occupancy, data):
 
 
 @pytest.mark.parametrize("layered", [False, True])
-@settings(max_examples=60)
+@examples(160)
 @given(data=st.data())
 def test_no_voxel_to_keep_is_lost_that_some_way_of_trimming_keeps(layered, data):
     path, solid, keep = data.draw(walks(layered))
@@ -177,7 +178,7 @@ def test_no_voxel_to_keep_is_lost_that_some_way_of_trimming_keeps(layered, data)
         assert n_lost == sum(keep[v] for v in gone)
 
 
-@settings(max_examples=60)
+@examples(220)
 @given(walks(layered=True))
 def test_one_scan_reaches_all_that_contracting_again_and_again_does(case):
     path, _, keep = case
@@ -300,7 +301,7 @@ def test_a_stick_has_no_pairs_and_loses_its_ends():
             assert told(trimmed) == (0, 0, 6, lost)
 
 
-@settings(max_examples=15, phases=NO_SHRINKING)
+@examples(48, phases=NO_SHRINKING)
 @given(polycubes(40), st.data())
 def test_a_plan_stays_valid_whichever_ends_are_cut(occupancy, data):
     assume(occupancy.sum() > 1)

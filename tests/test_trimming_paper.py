@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles import disjoint_subsets
@@ -159,7 +160,7 @@ def test_as_many_disjoint_pairs_of_index_2_as_there_can_be(pairs, n_wanted):
     assert all(p in short for p in chosen.tolist())
 
 
-@settings(max_examples=30)
+@examples(60)
 @given(polycubes(60), polycubes(60))
 def test_paths_come_out_certified_of_one_length_and_with_their_surface(one, other):
     solids = [lu.VoxelSolid(s) for s in (one, other) if s.sum() > 1]

@@ -5,7 +5,8 @@ import itertools
 import numpy as np
 import pytest
 from chains import walk
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 from walks import paths
@@ -57,7 +58,7 @@ def told(voxels):
 
 
 @given(paths())
-@settings(max_examples=40)
+@examples(140)
 def test_a_path_comes_back(voxels):
     voxels = even(voxels)
     word = lu.joint_word(voxels)
@@ -68,6 +69,7 @@ def test_a_path_comes_back(voxels):
     assert len(word) == len(voxels)
 
 
+@examples(400)
 @given(words())
 def test_a_word_comes_back_but_for_the_roll_of_its_frame(word):
     again = lu.joint_word(lu.forward(word))
@@ -78,7 +80,7 @@ def test_a_word_comes_back_but_for_the_roll_of_its_frame(word):
 
 
 @given(paths(), st.sampled_from(ROTATIONS), st.lists(st.integers(-50, 50), min_size=3, max_size=3))
-@settings(max_examples=40)
+@examples(160)
 def test_a_pose_turned_as_a_whole_has_the_same_letters(voxels, turn, shift):
     voxels = even(voxels)
     word, turned = lu.joint_word(voxels), lu.joint_word(voxels @ turn.T + shift)
@@ -88,7 +90,7 @@ def test_a_pose_turned_as_a_whole_has_the_same_letters(voxels, turn, shift):
 
 
 @given(paths())
-@settings(max_examples=40)
+@examples(160)
 def test_a_mirrored_pose_swaps_z_and_nothing_else(voxels):
     voxels = even(voxels)
     letters = lu.joint_word(voxels * (1, -1, 1)).letters
@@ -191,7 +193,7 @@ def test_what_is_no_word_is_refused(origin, frame, letters, reason):
 
 
 @given(paths(), st.data())
-@settings(max_examples=40)
+@examples(80)
 def test_a_letter_changed_is_another_pose(voxels, data):
     """No two words share a pose, so that a fault in one letter shows."""
     voxels = even(voxels)

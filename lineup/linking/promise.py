@@ -8,7 +8,7 @@ get no worse.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -34,19 +34,19 @@ def promising_plan(
     places = Places(shape, rng)
     top = _high_node(shape, k)
     fixed = both_ends_on_top and shape.size(top) > 1
-    drafts = []
+    drafts = _Drafts(shape, places)
+    drawn = []
     for j in range(N_DRAWN):
         tree = _spanning_tree(shape, k + j, rng)
         ends = (top, top) if fixed else _random_ends(shape, rng)
-        drafts.append(_draft(shape, places, tree, ends))
-    best = max(drafts, key=lambda draft: draft.prospects.best())
+        drawn.append(drafts.of(tree, ends))
+    best = max(drawn, key=lambda draft: draft.best)
     for _ in range(N_CHANGES):
         if fixed or rng.random() < 0.5:
-            changed = _draft(shape, places, _exchanged(shape, best.tree, rng), best.ends)
+            changed = drafts.of(_exchanged(shape, best.tree, rng), best.ends)
         else:
-            ends = _moved(shape, best.tree, best.ends, rng)
-            changed = _draft(shape, places, best.tree, ends)
-        if changed.prospects.best() >= best.prospects.best():
+            changed = drafts.of(best.tree, _moved(shape, best.tree, best.ends, rng))
+        if changed.best >= best.best:
             best = changed
     return best.plan, best.prospects
 
@@ -57,11 +57,26 @@ class _Draft:
     ends: tuple[int, int]
     plan: Plan
     prospects: Prospects
+    best: float
 
 
-def _draft(shape: Layers, places: Places, tree: Tree, ends: tuple[int, int]) -> _Draft:
-    rooted = plan(shape, tree, _even(shape, _way(tree, *ends)))
-    return _Draft(tree, ends, rooted, prospects(rooted, places))
+@dataclass(frozen=True, eq=False)
+class _Drafts:
+    """Each draft is worked out once: few are possible where nodes are few, and they come again."""
+
+    shape: Layers
+    places: Places
+    _made: dict[tuple[tuple[tuple[int, ...], ...], tuple[int, int]], _Draft] = field(
+        default_factory=dict
+    )
+
+    def of(self, tree: Tree, ends: tuple[int, int]) -> _Draft:
+        key = tuple(map(tuple, tree)), ends
+        if key not in self._made:
+            rooted = plan(self.shape, tree, _even(self.shape, _way(tree, *ends)))
+            ahead = prospects(rooted, self.places)
+            self._made[key] = _Draft(tree, ends, rooted, ahead, ahead.best())
+        return self._made[key]
 
 
 def _random_ends(shape: Layers, rng: np.random.Generator) -> tuple[int, int]:

@@ -9,12 +9,17 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from ..grid import bar_directions
-from ..motion.plan import rod_states
+from ..motion._slots import DETOUR, PLAIN
+from ..motion.plan import rod_plan
 from ..solid import Motion
 
 HEAD, TAIL = 0, 1
 ENDS = ("head", "tail")
 """The loose end before joint 0, and that after the last joint."""
+
+AT_ONCE, STRAIGHTEN, HINGE_FIRST = MANNERS = ("", "straighten", "hinge first")
+"""How a hinge is bent: after its piece and at once; through the pole of its socket, so that it
+first is in line with its piece; or before its piece. By the manners of a plan (`motion._slots`)."""
 
 
 class Action(NamedTuple):
@@ -29,7 +34,10 @@ class Action(NamedTuple):
     was, loose : int
         Direction of this loose end before and after, away from the body; they differ in a swing.
     moves : int
-        The pose after it is the one that `moves` moves of the unfolding lead to.
+        The pose after it is the one that `moves` moves of the unfolding lead to; where the hinge
+        goes first, of the piece's that in which the hinge alone is bent.
+    manner : str
+        One of `MANNERS`; "" of all but a hinge's.
     """
 
     end: int
@@ -37,6 +45,7 @@ class Action(NamedTuple):
     was: int
     loose: int
     moves: int
+    manner: str = AT_ONCE
 
     @property
     def swings(self) -> bool:
@@ -71,7 +80,8 @@ def actions_of(motion: Motion) -> tuple[tuple[int, int], list[Action]]:
     >>> len(actions)
     2
     """
-    states = [(a, b, da, db) for a, b, da, db in rod_states(motion).tolist()]
+    plan, manners = rod_plan(motion)
+    states = [(a, b, da, db) for a, b, da, db in plan.tolist()]
     if not states:
         raise ValueError(
             "a manual follows peels and swings of the chain's two straight ends until it is a "
@@ -87,11 +97,14 @@ def actions_of(motion: Motion) -> tuple[tuple[int, int], list[Action]]:
     if a > 0 and da != (bars[a] + 3) % 6:
         states.append((a, b, (bars[a] + 3) % 6, states[-1][3]))
     actions, moves = [], 0
-    for old, new in pairwise(states):
+    lined_up = [PLAIN] * (len(states) - len(plan))
+    how = [*manners.tolist(), *lined_up]
+    for (old, new), manner in zip(pairwise(states), how, strict=True):
         end = HEAD if old[1] == new[1] and old[3] == new[3] else TAIL
         joint, rod = old[end], new[2 + end]
         placed = joint != new[end]
         away = (bars[joint] + 3) % 6 if end == HEAD else bars[joint - 1]
-        actions.append(Action(end, joint, rod, rod if placed else old[2 + end], moves))
-        moves += not placed or away != rod
+        loose = rod if placed else old[2 + end]
+        actions.append(Action(end, joint, rod, loose, moves, MANNERS[manner]))
+        moves += (not placed or away != rod) + (manner == DETOUR)
     return (a, b), actions[::-1]

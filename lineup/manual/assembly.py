@@ -62,15 +62,20 @@ class Assembly:
     @cached_property
     def twists(self) -> IntArray:
         """Numbers of the actions that would twist a piece in its slots, sorted (`joints`)."""
-        twisting = np.unique(slot_violations(self.folding.motion)[:, 0])
+        twisting = slot_violations(self.folding.motion)[:, 0]
         before = [len(self.folding.motion), *(action.moves for action in self.actions)]
-        # An action that undoes a move leads back to the pose before it.
+        # An action undoes the moves from the pose after it to the pose before it.
         undoes = [
             k
-            for k, action in enumerate(self.actions, start=1)
-            if action.moves < before[k - 1] and action.moves in twisting
+            for k, (action, moves) in enumerate(zip(self.actions, before, strict=False), start=1)
+            if ((action.moves <= twisting) & (twisting < moves)).any()
         ]
         return np.array(undoes, np.int32)
+
+    @property
+    def joints(self) -> str:
+        """Joints that the motion asks for: "slotted" if it twists no piece, or else "free"."""
+        return "free" if len(self.twists) else "slotted"
 
     @cached_property
     def twisting(self) -> frozenset[Action]:
@@ -94,9 +99,9 @@ def assembly_of(folding: Folding) -> Assembly:
     >>> assembly_of(folding).n_blocks
     6
     """
+    word = joint_word(folding)
     folding = replace(folding, motion=with_few_turns(folding.motion))
     voxels = folding.path.voxels
-    word = joint_word(folding)
     base, actions = actions_of(folding.motion)
     build = best_build(voxels, base, actions)
     places = build.places(voxels)

@@ -8,7 +8,8 @@ import json
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, FiniteFloat
+from pydantic_core import PydanticCustomError
 
 from .. import grid
 from ..solid import Certificate
@@ -20,6 +21,15 @@ from .rows import BlockRow, Count, Whole, rows_of
 from .stretches import stretches
 
 Place = tuple[Count, Count, Count]
+
+VERSION = 2
+READS = f"this program reads version {VERSION} of lineup-manual; write the manual anew"
+
+
+def _of_this_version(version: int) -> int:
+    if version != VERSION:
+        raise PydanticCustomError("version", f"{version}, and {READS}")
+    return version
 
 
 class _Part(BaseModel):
@@ -55,6 +65,7 @@ class VerdictRow(_Part):
     """What the judge says of the motion."""
 
     ok: bool
+    joints: Annotated[str, Field(pattern="^(free|slotted)$")]
     reason: str
     where: Whole
     clearance: FiniteFloat | Literal["inf"] | None
@@ -73,7 +84,7 @@ class Document(_Part):
     """The whole of a manual."""
 
     format: Literal["lineup-manual"] = "lineup-manual"
-    version: Literal[1] = 1
+    version: Annotated[int, AfterValidator(_of_this_version)] = VERSION
     model: str
     voxels: Count
     blocks: Count
@@ -91,9 +102,10 @@ class Document(_Part):
 
 
 def document_of(assembly: Assembly, verdict: Certificate, model: str) -> Document:
-    """The document of an assembly."""
+    """The document of an assembly; the verdict is for the joints that its motion asks for."""
     motion, word = assembly.folding.motion, assembly.word
-    fields = plain({name: getattr(verdict, name) for name in VerdictRow.model_fields})
+    names = [name for name in VerdictRow.model_fields if name != "joints"]
+    fields = plain({name: getattr(verdict, name) for name in names})
     a, b = assembly.base
     return Document(
         model=model,
@@ -107,7 +119,7 @@ def document_of(assembly: Assembly, verdict: Certificate, model: str) -> Documen
         word=word.letters,
         diameter=float(motion.diameter),
         max_bend_deg=float(motion.max_bend_deg),
-        verdict=VerdictRow(**fields),
+        verdict=VerdictRow(joints=assembly.joints, **fields),
         build=BuildRow(down=assembly.build.down, shift=_three(assembly.build.shift)),
         base=(_three(assembly.places[a]), _three(assembly.places[b])),
         grade=grade_of(assembly).counts,

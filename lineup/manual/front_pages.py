@@ -87,7 +87,7 @@ def _difficulty(sheet: Sheet, document: Document, top: float) -> None:
     how = (
         f"{grade['blocks']} blocks + 4 × {grade['visits']} layer visits "
         f"+ 10 × {grade['limbs'] - 1} limbs beside the first + 6 × {grade['swings']} swings "
-        f"+ 2 × {grade['turns']} hinges that change slots + 2 × {grade['covered']} voxels that go "
+        f"+ 2 × {grade['turns']} hinges with a sign + 2 × {grade['covered']} voxels that go "
         "below others; from 100, 300, 900 and 2700 points on a model is a grade harder"
     )
     say(sheet, MARGIN + 30, top + 6.5, textwrap.fill(how, 88), 8.5, color=GREY)
@@ -109,15 +109,22 @@ def _verdict(sheet: Sheet, document: Document, top: float) -> None:
     else:
         head = "NOT CERTIFIED"
         text = f"{verdict.reason}; judged for {blocks}. Some steps may not be possible."
-    turns = document.grade["turns"]
-    slots = (
-        f"Joints may bend in any plane there. In printed slots, {turns} hinges (marked *) have to "
-        "be straightened first, which the certificate does not cover."
-        if turns
-        else "No piece is twisted in its slots."
-    )
     say(sheet, MARGIN + 4, top + 3.5, head, 13, fontweight="bold")
-    say(sheet, MARGIN + 4, top + 11, textwrap.fill(f"{text} {slots}", 98), 9.5)
+    say(sheet, MARGIN + 4, top + 11, textwrap.fill(f"{text} {_slots(document)}", 98), 9.5)
+
+
+def _slots(document: Document) -> str:
+    """What the certificate says of printed slots."""
+    twists = sum(row.twists for row in document.rows)
+    signs = document.grade["turns"]
+    if twists:
+        return (
+            f"Joints may bend in any plane there. In printed slots, {twists} hinges (marked *) "
+            "have to be straightened first, which the certificate does not cover."
+        )
+    if signs:
+        return f"No piece is twisted in its slots if the {signs} hinges marked * or + bend as told."
+    return "No piece is twisted in its slots."
 
 
 def card_page(

@@ -29,7 +29,8 @@ class Grade:
     swings : int
         Times that a loose end changes its direction.
     turns : int
-        Bends at which the piece that the hinge sits in would be twisted (`joints`).
+        Hinges that the slots do not let bend at once (`joints`): bends and swings that would twist
+        a piece, and hinges bent in a manner that does not.
     covered : int
         Voxels that go below others that are there already.
     points : int
@@ -76,7 +77,7 @@ def grade_of(assembly: Assembly) -> Grade:
         "visits": 1 + sum(before != after for before, after in pairwise(runs)),
         "limbs": _limbs(assembly),
         "swings": n_swings,
-        "turns": len(assembly.twists),
+        "turns": len(assembly.twists) + sum(action.manner != "" for action in laid),
         "covered": len(covered(assembly.places, assembly.base, assembly.actions)),
     }
     weights = {"blocks": 1, "visits": 4, "limbs": 10, "swings": 6, "turns": 2, "covered": 2}

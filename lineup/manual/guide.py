@@ -18,10 +18,10 @@ def guide_page(name: str, n_blocks: int, paper: str, page: int, n_pages: int) ->
     sheet = blank(paper)
     title(sheet, "How it works")
     _chain(sheet, n_blocks, 28)
-    _joint(sheet, 86)
-    _compass(sheet, 86)
-    _signs(sheet, 144)
-    _reading(sheet, 216)
+    _joint(sheet, 84)
+    _compass(sheet, 84)
+    _signs(sheet, 140)
+    _reading(sheet, 205)
     foot(sheet, f"{name} · page {page} of {n_pages}")
     return sheet
 
@@ -143,7 +143,7 @@ def _signs(sheet: Sheet, top: float) -> None:
     )
     for k, (sign, text) in enumerate(entries):
         column, row = divmod(k, 3)
-        x, y = MARGIN + 92 * column, top + 11 + 19 * row
+        x, y = MARGIN + 92 * column, top + 11 + 17 * row
         _sign(sheet, sign, x, y + 4)
         say(sheet, x + 26, y, textwrap.fill(text, 40), 9)
 
@@ -190,14 +190,17 @@ def _reading(sheet: Sheet, top: float) -> None:
     say(sheet, MARGIN, top, "A step", 12, fontweight="bold")
     texts = (
         "1.  Take the end of the chain that the page names, and let it point as it says.",
-        "2.  Lay the blocks on the plan, from the first number to the last: first the piece, then "
-        "the hinge.",
+        "2.  Lay the blocks on the plan from the first number to the last: the piece, then the "
+        "hinge (but see 5).",
         "3.  Compare with the picture: what is new is dark.",
-        "4.  Check by letters if you like. 11-13  EN WW* SU  says: block 11, its piece goes E and "
-        "its hinge N;\n     block 12, W and W; block 13, S and U. A - stands for what another step "
+        "4.  Check by letters if you like. 11-13  EN WU* SU+  says: block 11, its piece goes E and "
+        "its hinge N;\n     block 12, W and U; block 13, S and U. A - stands for what another step "
         "does.",
-        "5.  A star: the slots let this hinge not turn from side to side. Straighten it out of its "
-        "piece,\n     then press it into the other slot.",
+        "5.  Signs, on plans and letters, are where the slots let a hinge not turn from side to "
+        "side.\n     * Straighten it out of its piece, then press it into the slot of its letter."
+        "\n     + Bend the hinge first, to its letter, while its piece is still in line "
+        "with the loose end. Then bend\n        the piece; hinge and loose end go on pointing as "
+        "they did.",
         "6.  Do the check at the foot of the page, and tick the step on the list.",
     )
     say(sheet, MARGIN, top + 7, "\n".join(texts), 9.5, linespacing=1.5)

@@ -15,6 +15,7 @@ from ..grid import FloatArray, IntArray
 from .actions import HEAD, TAIL, Action
 from .assembly import Assembly
 from .sheets import POINT, RAMP, Sheet, line, say, wedge
+from .stretches import sign
 
 PIECE, HINGE = 0.6, 0.15
 """Width of a bar, in cells."""
@@ -66,7 +67,8 @@ def draw_plan(
     Cells are pale where the layer below is filled and grey where this one is; hatched ones lie
     below voxels that are there already. Thick bars are printed pieces, thin ones hinges, dark to
     light in the order in which they are laid, which arrows show. Triangles tell where the chain
-    leaves for the layer above or below (dark) and where it comes from there (white).
+    leaves for the layer above or below (dark) and where it comes from there (white). A `sign`
+    stands in the corner of the cell in which its hinge leaves the piece.
     """
     places = assembly.places
     ground(sheet, plan, places[old], layer)
@@ -76,6 +78,11 @@ def draw_plan(
     for bar in bars:
         _draw_way(sheet, plan, bar, layer)
     _numbers(sheet, plan, assembly, laid, layer)
+    for action in laid:
+        what = sign(assembly, action)
+        if what and places[action.before, 2] == layer:
+            x, y = plan.at(places[action.before]).tolist()
+            sign_mark(sheet, x, y, what, plan.cell)
 
 
 class _Bar:
@@ -219,6 +226,23 @@ def _numbers(
                 continue
             x, y = plan.at(places[places[:, 2] == layer]).mean(axis=0).tolist()
             number_mark(sheet, x, y, block + 1, plan.cell, kind)
+
+
+def sign_mark(sheet: Sheet, x: float, y: float, what: str, cell: float) -> None:
+    """A sign at the corner of the cell about a point, where no bar is."""
+    at = 0.34 * cell
+    sheet.axes.text(
+        x + at,
+        y + at,
+        what,
+        fontsize=max(5.0, min(12.0, 0.42 * cell * POINT)),
+        ha="center",
+        va="center",
+        color=INK,
+        fontweight="bold",
+        zorder=8,
+        bbox={"boxstyle": "circle,pad=0.02", "facecolor": "white", "edgecolor": "none"},
+    )
 
 
 def number_mark(sheet: Sheet, x: float, y: float, number: int, cell: float, kind: str) -> None:

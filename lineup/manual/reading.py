@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias
 
@@ -13,14 +14,15 @@ from pydantic import ValidationError
 
 from .. import grid
 from .._files import content
+from ..joints import slot_violations
 from ..kinematics import Move
-from ..motion.plan import DIAMETER, MAX_BEND_DEG
+from ..motion.plan import DIAMETER, MAX_BEND_DEG, Row, inward_bar
 from ..solid import Certificate, Folding, Motion, VoxelPath
 from ..storage import first_error
-from .actions import ENDS, HEAD, TAIL
+from .actions import AT_ONCE, ENDS, HEAD, HINGE_FIRST, STRAIGHTEN, TAIL
 from .assembly import assembly_of
 from .build import LYING, Build, build_of
-from .documents import Document, document_of
+from .documents import READS, Document, document_of
 from .rows import BlockRow, rows_of
 
 READ = "straight: read from a manual"
@@ -34,8 +36,9 @@ Event: TypeAlias = int | tuple[int, int, int]
 def read_manual(file: str | os.PathLike[str]) -> Folding:
     """The folding that the rows of a manual tell of, as `write_manual` wrote them.
 
-    Only the voxels, the numbers of the actions that put them in place and the swings are followed;
-    whatever else a manual says is worked out anew, and has to agree.
+    Only the voxels, the numbers of the actions that put them in place, the swings, and the manners
+    in which hinges are bent are followed; whatever else a manual says is worked out anew, and has
+    to agree.
 
     Parameters
     ----------
@@ -47,15 +50,15 @@ def read_manual(file: str | os.PathLike[str]) -> Folding:
     -------
     Folding
         Its motion unfolds the path; played backwards it is what the hand does. Only `certify`
-        says that it is free of collisions. A motion for slotted joints comes back as one for
-        free joints, for the rows have no words for two moves that are one for the hand.
+        says that it is free of collisions, and whether slotted joints let the chain make it.
 
     Raises
     ------
     FileNotFoundError
         If there is no such file.
     ValueError
-        If it is no manual, or contradicts itself: one line that names the row and the entry.
+        If it is no manual, is of another version, or contradicts itself: one line that names the
+        row and the entry.
 
     Examples
     --------
@@ -87,6 +90,10 @@ def _csv_rows(file: Path) -> list[BlockRow]:
     text = io.StringIO(content(file).decode(), newline="")
     reader = csv.DictReader(text, restkey="beyond", strict=True)
     try:
+        names = reader.fieldnames or []
+        missing = [name for name in BlockRow.model_fields if name not in names]
+        if missing:
+            raise ValueError(f"no column {missing[0]}: {READS}")
         for k, entries in enumerate(reader, start=1):
             given = {name: entry for name, entry in entries.items() if entry is not None}
             rows.append(_csv_row(k, given))
@@ -105,7 +112,8 @@ def _csv_row(k: int, entries: dict[str, str]) -> BlockRow:
 def _followed(rows: list[BlockRow], diameter: float, max_bend_deg: float) -> Folding:
     """The folding that rows tell of, which must then have just these rows."""
     voxels = _voxels(rows)
-    moves = _moves(rows, voxels, _build(rows, voxels))
+    build = _build(rows, voxels)
+    moves = _moves(rows, voxels, build)
     motion = Motion(voxels, moves, diameter, max_bend_deg, True, READ)
     folding = Folding(VoxelPath(voxels, method="manual"), motion)
     for given, told in zip(rows, rows_of(assembly_of(folding)), strict=True):
@@ -115,7 +123,21 @@ def _followed(rows: list[BlockRow], diameter: float, max_bend_deg: float) -> Fol
                     f"row {told.order}: {name} is {getattr(given, name)!r}, "
                     f"and by the other entries it would be {value!r}"
                 )
+    if any(row.manner for row in rows):
+        at_once = [row.model_copy(update={"manner": AT_ONCE}) for row in rows]
+        _check_manners(rows, replace(motion, moves=_moves(at_once, voxels, build)))
     return folding
+
+
+def _check_manners(rows: list[BlockRow], at_once: Motion) -> None:
+    """Whether only hinges whose peels would twist a piece, if made at once, are bent otherwise."""
+    peels = at_once.moves[slot_violations(at_once)[:, 0]].tolist()
+    blocks = {joint // 2 + 1 for kind, joint, *_ in peels if kind == Move.PEEL}
+    for row in rows:
+        if row.manner and row.block not in blocks:
+            raise ValueError(
+                f"row {row.order}: manner is {row.manner!r}, and slots let this hinge bend at once"
+            )
 
 
 def _voxels(rows: list[BlockRow]) -> grid.IntArray:
@@ -175,7 +197,8 @@ def _moves(rows: list[BlockRow], voxels: grid.IntArray, build: Build) -> grid.In
     if len(base) != 2 or base[1] != base[0] + 1:
         raise ValueError("the base is not two voxels in a row")
     at, loose = base, [(bars[base[0]] + 3) % 6, bars[base[0]]]
-    moves = []
+    manners = {row.block - 1: row.manner for row in rows}
+    moves: list[Row] = []
     for event in _events(rows, build):
         if isinstance(event, tuple):
             end, was, now = event
@@ -190,9 +213,24 @@ def _moves(rows: list[BlockRow], voxels: grid.IntArray, build: Build) -> grid.In
             raise ValueError(f"block {event // 2 + 1} comes before one that it hangs on")
         away = (bars[event] + 3) % 6 if end == HEAD else bars[event - 1]
         if away != loose[end]:
-            moves.append((Move.PEEL, at[end], event, loose[end]))
+            hinge = min(event, at[end]) % 2 == 0
+            manner = manners[event // 2] if hinge else AT_ONCE
+            _add(moves, (Move.PEEL, at[end], event, loose[end]), manner, bars)
         at[end] = event
     return np.array(moves[::-1], np.int32).reshape(-1, 4)
+
+
+def _add(moves: list[Row], peel: Row, manner: str, bars: list[int]) -> None:
+    """Add what bends a joint in such a manner, if it can be, in the order of the hand."""
+    _, inner, outer, loose = peel
+    beyond = 2 * outer - inner
+    piece, bar = inward_bar(bars, inner, outer), inward_bar(bars, outer, beyond)
+    if manner == HINGE_FIRST and moves and moves[-1][0] == Move.PEEL and moves[-1][2] == inner:
+        moves.insert(-1, peel)
+        return
+    moves.append(peel)
+    if manner == STRAIGHTEN and piece % 3 not in (bar % 3, loose % 3):
+        moves.append((Move.PEEL, inner, outer, piece))
 
 
 def _check_document(document: Document, folding: Folding) -> None:

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from .. import grid
 from ..grid import IntArray
 from ..words import bar_frames
-from .actions import ENDS, Action
+from .actions import AT_ONCE, ENDS, MANNERS, Action
 from .assembly import Assembly
 
 Whole = Annotated[int, Field(ge=-(2**30), le=2**30)]
@@ -43,6 +43,7 @@ class BlockRow(BaseModel):
     swings: Annotated[str, Field(pattern=f"^({_SWING}( {_SWING})*)?$")]
     bends: Annotated[str, Field(pattern="^[ENUWSD]{0,2}$")]
     loose: Annotated[str, Field(pattern="^[ENUWSD]{0,2}$")]
+    manner: Annotated[str, Field(pattern=f"^({'|'.join(MANNERS)})$")]
     twists: Count
     column: Count
     row: Count
@@ -111,6 +112,7 @@ def _work(assembly: Assembly, i: int, swings: dict[int, list[str]]) -> dict[str,
         "swings": " ".join(swung),
         "bends": "".join(bend(assembly, action) for action in done),
         "loose": "".join(assembly.build.letters[action.loose] for action in done),
+        "manner": next((action.manner for action in done if action.manner), AT_ONCE),
         "twists": int(np.isin(numbers, assembly.twists).sum()),
         "column": column,
         "row": row,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 
 import numpy as np
@@ -17,7 +18,7 @@ from .pictures import LooseEnd, body_picture
 from .plans import Plan, base_bar, draw_plan
 from .scene import in_place, loose_ends
 from .sheets import MARGIN, Sheet, blank, box, compass, foot, say, show
-from .stretches import Stretch, lines, stretches
+from .stretches import Stretch, lines, sign, stretches
 
 WAYS = {
     "E": "E (east, to the right)",
@@ -28,6 +29,12 @@ WAYS = {
     "D": "D (down)",
 }
 """Directions in words, by letter."""
+
+SAID = {
+    "*": "straighten the hinge out of its piece first, then press it into the slot of its letter.",
+    "+": "bend the hinge first, its piece still in line with the loose end; then bend the piece.",
+}
+"""What the signs ask for, in words."""
 
 MONO, MONO_WIDTH = "DejaVu Sans Mono", 0.2125
 """A typeface all of whose letters are so many millimetres wide, for each point of its size."""
@@ -129,12 +136,20 @@ def _instructions(
         texts.append(
             f"{hidden} voxels go below others (hatched): lift the body, or lay them from the side."
         )
-    if not assembly.twisting.isdisjoint(actions):
-        texts.append(
-            "*  Straighten this hinge out of its piece first, then press it into the slot on "
-            "the side of its letter."
-        )
-    return texts
+    return texts + [
+        _signed(one, what, marked)
+        for one, what in SAID.items()
+        if (marked := [action for action in actions if sign(assembly, action) == one])
+    ]
+
+
+def _signed(one: str, what: str, marked: Sequence[Action]) -> str:
+    """What a sign asks for, and where."""
+    blocks = [str(action.joint // 2 + 1) for action in marked if not action.swings]
+    where = [f"block{'s' if len(blocks) > 1 else ''} {', '.join(blocks)}"] if blocks else []
+    where += ["the swing with this sign"] if len(blocks) < len(marked) else []
+    text = f"{' and '.join(where).capitalize()}: {what}"
+    return textwrap.fill(text, 110, initial_indent=f"{one}  ", subsequent_indent=" " * 5)
 
 
 def hanging(end: LooseEnd) -> str:
@@ -153,7 +168,7 @@ def _swings(assembly: Assembly, part: Stretch) -> list[str]:
     letters = assembly.build.letters
     return [
         f"{ENDS[swing.end]} from {letters[swing.was]} to {letters[swing.loose]}"
-        + ("*" if swing in assembly.twisting else "")
+        + sign(assembly, swing)
         for swing in part.swings
     ]
 

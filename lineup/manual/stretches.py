@@ -3,12 +3,15 @@
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from .actions import Action
+from .actions import AT_ONCE, HINGE_FIRST, STRAIGHTEN, Action
 from .assembly import Assembly
 from .rows import bend
 
 LINE = 10
 """The booklet breaks lines after every so many blocks."""
+
+SIGNS = {AT_ONCE: "", STRAIGHTEN: "*", HINGE_FIRST: "+"}
+"""By how a hinge is bent."""
 
 
 class Stretch(NamedTuple):
@@ -51,18 +54,22 @@ def stretches(actions: Sequence[Action]) -> list[Stretch]:
     return found
 
 
+def sign(assembly: Assembly, action: Action) -> str:
+    """What marks an action that the slots do not let be done at once; empty for most."""
+    return SIGNS[STRAIGHTEN] if action in assembly.twisting else SIGNS[action.manner]
+
+
 def lines(assembly: Assembly, stretch: Stretch) -> Iterator[tuple[int, int, list[str]]]:
     """Lines of up to ten blocks: the first and the last, and the letters of each.
 
-    Two letters a block: where its piece goes, where its hinge goes; ``-`` stands for one that
-    another stretch does, and ``*`` is after a bend that would twist the piece before it.
+    Two letters a block: where its piece goes, where its hinge goes, and then a `sign`, if any;
+    ``-`` stands for one that another stretch does.
     """
     words: dict[int, list[str]] = {}
     for action in stretch.laid:
         block = action.joint // 2
         word = words.setdefault(block, ["-", "-"])
-        twist = "*" if action in assembly.twisting else ""
-        word[action.lays_hinge] = bend(assembly, action) + twist
+        word[action.lays_hinge] = bend(assembly, action) + sign(assembly, action)
     rows: dict[int, list[int]] = {}
     for block in words:
         rows.setdefault(block // LINE, []).append(block)

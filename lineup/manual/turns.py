@@ -10,9 +10,11 @@ import numpy as np
 
 from .._jit import kernel
 from ..grid import IntArray
+from ..joints import slot_violations
 from ..motion._chain import Chain, Grid, link
 from ..motion._search import may_peel, may_swing
-from ..motion.plan import motion_of, path_grid, rod_states
+from ..motion._slots import peels_at_once, twisted_by_swing
+from ..motion.plan import motion_of, path_grid, rod_plan
 from ..solid import Motion
 
 _CHANGE, _HALF = 2, 1
@@ -24,8 +26,15 @@ _NEVER = 2**30
 def with_few_turns(motion: Motion) -> Motion:
     """The motion with its moves in an order in which the ends change least often.
 
-    The order keeps the rules of a peel plan, by which rods have room (docs/motion.md, Lemma 6).
-    The motion itself is returned if no other order is better, or it is not of two straight rods.
+    The order keeps the rules of a peel plan, by which rods have room (docs/motion.md, Lemma 6), and
+    keeps to the slots if the motion does (Section 11). The motion itself is returned if no other
+    order is better, if it is not of two straight rods, or if it has moves for the slots and twists
+    pieces all the same.
+
+    Raises
+    ------
+    ValueError
+        If the number of joints is odd.
 
     Examples
     --------
@@ -35,10 +44,14 @@ def with_few_turns(motion: Motion) -> Motion:
     >>> len(with_few_turns(motion)) == len(motion)
     True
     """
-    states, best = rod_states(motion), motion
+    states, manners = rod_plan(motion)
+    joints = "free" if len(states) and len(slot_violations(motion)) else "slotted"
+    if joints == "free" and manners.any():
+        return motion
+    best = motion
     while len(states):
-        other = _ordered(motion, states)
-        states_then = rod_states(other)
+        other = _ordered(motion, states, joints)
+        states_then, _ = rod_plan(other)
         # Joints that lie along their rod need no move, so they may be counted to the other end.
         if not len(states_then) or _cost(states_then) >= _cost(states):
             break
@@ -46,16 +59,16 @@ def with_few_turns(motion: Motion) -> Motion:
     return best
 
 
-def _ordered(motion: Motion, states: IntArray) -> Motion:
+def _ordered(motion: Motion, states: IntArray, joints: str) -> Motion:
     """The motion with the moves of its states in the order of least cost, if there is any."""
     ways = [_way(states, end) for end in (0, 1)]
     grid, cells = path_grid(motion.start)
-    ends = _fewest(grid, link(grid, cells), ways[0], ways[1])
+    ends = _fewest(grid, link(grid, cells), ways[0], ways[1], joints == "slotted")
     if not len(ends):
         return motion
     return replace(
         motion,
-        moves=motion_of(motion.start, _states(ends, ways)).moves,
+        moves=motion_of(motion.start, _states(ends, ways), joints).moves,
         reason=f"{motion.reason}; the ends in another order",
     )
 
@@ -90,42 +103,64 @@ def _change(joint: int, end: int) -> int:
 
 
 @kernel
-def _fewest(grid: Grid, chain: Chain, head: IntArray, tail: IntArray) -> IntArray:
+def _fewest(grid: Grid, chain: Chain, head: IntArray, tail: IntArray, slots: bool) -> IntArray:
     """The end of each move in the order of least cost; none if there is no order."""
     m, k = len(head), len(tail)
-    cost = np.full((m, k, 2), _NEVER, np.int64)
-    came = np.full((m, k, 2), -1, np.int8)  # the end that moved before
+    cost = np.full((m, k, 2), _NEVER, np.int32)
+    came = np.full((m, k, 2), -1, np.int32)  # the end that moved before
+    leap = np.zeros((m, k, 2), np.int32)  # by so many moves of this end
     cost[0, 0, :] = 0
     for i in range(m):
         for j in range(k):
             state = np.array([head[i, 0], tail[j, 0], head[i, 1], tail[j, 1]], np.int32)
             for end in range(2):
-                i2, j2 = i + 1 - end, j + end
-                if i2 == m or j2 == k or min(cost[i, j, 0], cost[i, j, 1]) >= _NEVER:
+                if min(cost[i, j, 0], cost[i, j, 1]) >= _NEVER:
                     continue
-                after = tail[j2] if end else head[i2]
-                if not _may(grid, chain, state, end, after):
+                way = tail[j:] if end else head[i:]
+                n = _at_once(grid, chain, state, end, way, slots)
+                if n == 0:
                     continue
+                i2, j2 = i + n * (1 - end), j + n * end
                 stay = cost[i, j, end]
                 change = cost[i, j, 1 - end] + _change(state[1 - end], 1 - end)
                 if i + j == 0:
                     change = stay
-                cost[i2, j2, end] = min(stay, change)
-                came[i2, j2, end] = end if stay <= change else 1 - end
-    end = int(np.argmin(cost[m - 1, k - 1]))
-    least = cost[m - 1, k - 1, end]
-    ends = np.zeros(m + k - 2 if least < _NEVER else 0, np.int32)
-    i, j = m - 1, k - 1
-    for row in range(len(ends) - 1, -1, -1):
-        ends[row] = end
-        before = came[i, j, end]
-        i, j, end = i - 1 + end, j - end, before
+                if min(stay, change) < cost[i2, j2, end]:
+                    cost[i2, j2, end] = min(stay, change)
+                    came[i2, j2, end] = end if stay <= change else 1 - end
+                    leap[i2, j2, end] = n
+    return _ends(cost, came, leap)
+
+
+@kernel
+def _ends(cost: IntArray, came: IntArray, leap: IntArray) -> IntArray:
+    """The end of each move on the way to the last state; none if there is none."""
+    i, j = cost.shape[0] - 1, cost.shape[1] - 1
+    end = int(np.argmin(cost[i, j]))
+    ends = np.zeros(i + j if cost[i, j, end] < _NEVER else 0, np.int32)
+    while len(ends) and i + j > 0:
+        n, before = leap[i, j, end], came[i, j, end]
+        ends[i + j - n : i + j] = end
+        i, j, end = i - n * (1 - end), j - n * end, before
     return ends
 
 
 @kernel
-def _may(grid: Grid, chain: Chain, state: IntArray, end: int, after: IntArray) -> bool:
-    """Whether an end may go on to this joint, or swing its rod to this direction."""
-    if after[0] != state[end]:
-        return may_peel(grid, chain, state, end)
-    return may_swing(grid, chain, state, end, after[1])
+def _at_once(
+    grid: Grid, chain: Chain, state: IntArray, end: int, way: IntArray, slots: bool
+) -> int:
+    """Moves along its way that an end may make together: 0, 1, or 2 that swap for the slots."""
+    if len(way) == 1:
+        return 0
+    after = way[1]
+    if after[0] == state[end]:
+        fine = may_swing(grid, chain, state, end, after[1])
+        if slots and fine and twisted_by_swing(grid, chain, state, end, after[1]):
+            fine = False
+        return int(fine)
+    if not may_peel(grid, chain, state, end):
+        return 0
+    n = peels_at_once(grid, chain, state, end) if slots else 1
+    if n == 2 and (len(way) == 2 or way[2, 0] == after[0]):
+        return 0
+    return n

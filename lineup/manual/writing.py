@@ -39,8 +39,10 @@ def write_manual(
 
     The steps are the motion played backwards, from the straight line to the body, so that who
     follows them is never blocked, as far as the motion is certified; the manual says whether it
-    is. If the chain's two ends take turns, their moves are put in the order that changes ends
-    least often, and that motion is the one that is judged, and that `read_manual` returns.
+    is, for slotted joints if the motion keeps to the slots, and else for free ones. If the chain's
+    two ends take turns, their moves are put in the order that changes ends least often, of orders
+    that keep to the slots if it does, and that motion is the one that is judged, and that
+    `read_manual` returns.
 
     Parameters
     ----------
@@ -130,6 +132,5 @@ def _laid_out(
     plain_name(name)
     assembly = assembly_of(folding)
     motion = assembly.folding.motion
-    return assembly, document_of(
-        assembly, certify(motion, motion.diameter, motion.max_bend_deg), name
-    )
+    verdict = certify(motion, motion.diameter, motion.max_bend_deg, joints=assembly.joints)
+    return assembly, document_of(assembly, verdict, name)

@@ -20,6 +20,9 @@ from ._chain import INWARD, Chain, Grid, has_rod, rays_meet
 FREE, SLOTTED, SPARING = range(3)
 """Peels that would twist a capsule are made as any other, never, or where nothing else helps."""
 
+PLAIN, DETOUR, SWAP = range(3)
+"""Manners of a step of a plan: as it is, or a peel made in two in one of these ways."""
+
 
 @kernel
 def _direction(grid: Grid, chain: Chain, k: int, to: int) -> int:

@@ -1,6 +1,6 @@
 """Peel plans of a lattice path, and the motions they stand for (Section 6)."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -11,7 +11,17 @@ from ..kinematics import Move
 from ..solid import Motion
 from ._chain import INWARD, Grid, box_grid, cells_of, link
 from ._search import keeps_rules, search
-from ._slots import FREE, SLOTTED, SPARING, may_detour, may_swap, twisted_by_peel
+from ._slots import (
+    DETOUR,
+    FREE,
+    PLAIN,
+    SLOTTED,
+    SPARING,
+    SWAP,
+    may_detour,
+    may_swap,
+    twisted_by_peel,
+)
 
 DIAMETER = 0.999
 """Peels and swings keep bars a whole voxel apart; the rest is room for rounding."""
@@ -70,10 +80,36 @@ def motion_of(voxels: IntArray, states: IntArray, joints: str = "free") -> Motio
     Unless `joints` are free, peels that would twist a capsule are made in two or swapped with the
     next, where there is room for that.
     """
+    manners = np.zeros(len(states) - 1, np.int32)
+    return _made(voxels, states, manners if joints == "free" else manners_for_slots(voxels, states))
+
+
+def manners_for_slots(voxels: IntArray, states: IntArray) -> IntArray:
+    """How each step (K - 1,) of a plan keeps to the slots: PLAIN, DETOUR or SWAP.
+
+    PLAIN as well where there is no room for either of the others.
+    """
+    grid, cells = path_grid(voxels)
+    chain, states = link(grid, cells), states.astype(np.int32)
+    manners = np.full(len(states) - 1, PLAIN, np.int32)
+    for k, (state, after) in enumerate(pairwise(states)):
+        end = int(state[1] != after[1])
+        capsule = twisted_by_peel(grid, chain, state, end) if state[end] != after[end] else -1
+        if capsule < 0:
+            continue
+        goes_on = k + 2 < len(states) and states[k + 2, end] != after[end]
+        if goes_on and may_swap(grid, chain, state, end):
+            manners[k] = SWAP
+        elif may_detour(grid, chain, state, end, capsule):
+            manners[k] = DETOUR
+    return manners
+
+
+def _made(voxels: IntArray, states: IntArray, manners: IntArray) -> Motion:
+    """The motion of a plan whose steps are made in these manners."""
     bars = bar_directions(voxels)
     last = len(voxels) - 1
-    steps = [_move(bars, last, old, new) for old, new in pairwise(states.tolist())]
-    moves = [row for row in steps if row] if joints == "free" else _untwisted(voxels, states, steps)
+    moves = _moves(bars, last, states, manners)
     a, b, da, db = states[-1]
     straight = bool(b - a == 1)
     if straight:
@@ -85,6 +121,26 @@ def motion_of(voxels: IntArray, states: IntArray, joints: str = "free") -> Motio
     reason = "straight" if straight else f"stuck with joints {a} to {b} of {last + 1} still folded"
     rows = np.array(moves, np.int32).reshape(-1, 4)
     return Motion(voxels, rows, DIAMETER, MAX_BEND_DEG, straight, reason)
+
+
+def _moves(bars: Directions, last: int, states: IntArray, manners: IntArray) -> list[Row]:
+    moves: list[Row] = []
+    before = PLAIN
+    for (old, new), manner in zip(pairwise(states.tolist()), manners.tolist(), strict=True):
+        row = _move(bars, last, old, new)
+        if row and manner == DETOUR:
+            moves.append((*row[:3], inward_bar(bars, row[1], row[2])))
+        if row:
+            moves.append(row)
+        if before == SWAP:
+            moves[-2:] = moves[:-3:-1]
+        before = manner
+    return moves
+
+
+def inward_bar(bars: Sequence[int] | Directions, inner: int, outer: int) -> int:
+    """Direction, outward, of the bar that ends at `inner`, beside bar (inner, outer)."""
+    return int(bars[inner - 1]) if outer > inner else int(bars[inner] + 3) % 6
 
 
 def _move(bars: Directions, last: int, old: list[int], new: list[int]) -> Row | None:
@@ -99,28 +155,6 @@ def _move(bars: Directions, last: int, old: list[int], new: list[int]) -> Row | 
     if da2 != da and a > 0:
         return (Move.SWING, a, a - 1, da2)
     return None
-
-
-def _untwisted(voxels: IntArray, states: IntArray, steps: list[Row | None]) -> list[Row]:
-    """The moves of a plan in an order and by ways that keep to the slots, where there are such."""
-    grid, cells = path_grid(voxels)
-    chain, moves, states = link(grid, cells), list[Row](), states.astype(np.int32)
-    ends = [int(old[1] != new[1]) for old, new in pairwise(states.tolist())]
-    k = 0
-    while k < len(steps):
-        row, state, end = steps[k], states[k], ends[k]
-        capsule = twisted_by_peel(grid, chain, state, end) if row and row[0] == Move.PEEL else -1
-        if row and capsule >= 0:
-            following = steps[k + 1] if k + 1 < len(steps) and ends[k + 1] == end else None
-            if following and following[0] == Move.PEEL and may_swap(grid, chain, state, end):
-                moves.append(following)
-                k += 1
-            elif may_detour(grid, chain, state, end, capsule):
-                moves.append((*row[:3], capsule))
-        if row:
-            moves.append(row)
-        k += 1
-    return moves
 
 
 def has_peel_plan(motion: Motion) -> bool:
@@ -144,59 +178,69 @@ def states_of(motion: Motion) -> IntArray:
 
 def _plan_behind(motion: Motion) -> IntArray:
     """The states (K, 4) of `states_of`; none if they would not be a peel plan of this motion."""
-    states = rod_states(motion)
+    states, manners = rod_plan(motion)
+    if not len(states) or (
+        manners.any() and not np.array_equal(manners, manners_for_slots(motion.start, states))
+    ):
+        return states[:0]
     grid, cells = path_grid(motion.start)
-    return states if len(states) and keeps_rules(grid, link(grid, cells), states) else states[:0]
+    return states if keeps_rules(grid, link(grid, cells), states) else states[:0]
 
 
-def rod_states(motion: Motion) -> IntArray:
+def rod_plan(motion: Motion) -> tuple[IntArray, IntArray]:
     """States (K, 4) of a motion to the line in which nothing but two straight end rods moves.
 
-    None, (0, 4), if the motion is not of this kind. That rods have room is not asked here.
+    And the manners (K - 1,) of the steps between. None at all, if the motion is not of this kind.
+    That rods have room is not asked here.
     """
-    none = np.empty((0, 4), np.int32)
+    none = np.empty((0, 4), np.int32), np.empty(0, np.int32)
     if not (motion.straight and np.isin(motion.moves[:, 0], (Move.PEEL, Move.SWING)).all()):
         return none
     moves = _in_order(motion.moves)
     bars = bar_directions(motion.start)
-    state = [0, len(motion.start) - 1, _first_rod(bars, moves, 0), _first_rod(bars, moves, 1)]
-    states = [tuple(state)]
+    rods = [_first_rod(bars, [row for row, _ in moves], end) for end in (0, 1)]
+    state = [0, len(motion.start) - 1, *rods]
+    states, manners = [tuple(state)], [PLAIN]
 
-    def let_go(end: int, joint: int) -> None:
+    def enter(end: int, joint: int) -> None:
         """Enter the states up to the one where `end` is at `joint`."""
         while state[end] != joint:
             state[end] += INWARD[end]
             states.append(tuple(state))
+            manners.append(PLAIN)
 
-    for kind, joint, other, value in moves:
+    for (kind, joint, other, value), manner in moves:
         end = int(other > joint)
         if not state[0] <= joint <= state[1]:
             return none
-        let_go(end, joint)
+        enter(end, joint)
         if kind == Move.SWING:
             state[2 + end] = value
             states.append(tuple(state))
+            manners.append(PLAIN)
+        else:
+            manners[-1] = manner
     if state[0] == state[1]:
         return none
-    let_go(1, state[0] + 1)  # the rest is straight, so either end may take it
+    enter(1, state[0] + 1)  # the rest is straight, so either end may take it
     for plan in _ended(np.array(states, np.int32)):
-        for joints in ("free", "slotted"):
-            if np.array_equal(motion_of(motion.start, plan, joints).moves, motion.moves):
-                return plan
+        made = np.array(manners[1 : len(plan)], np.int32)
+        if np.array_equal(_made(motion.start, plan, made).moves, motion.moves):
+            return plan, made
     return none
 
 
-def _in_order(moves: IntArray) -> list[Row]:
-    """The moves with no peel made in two, and none before that of the bar beyond it."""
-    rows: list[Row] = []
+def _in_order(moves: IntArray) -> list[tuple[Row, int]]:
+    """The moves and their manners: no peel in two, and none before that of the bar beyond it."""
+    rows: list[tuple[Row, int]] = []
     for row in map(tuple, moves.tolist()):
-        kind, joint, other, value = rows[-1] if rows else (-1, -1, -1, -1)
+        kind, joint, other, value = rows[-1][0] if rows else (-1, -1, -1, -1)
         if row[0] == kind == Move.PEEL and row[1:3] == (joint, other):
-            rows[-1] = row
+            rows[-1] = row, DETOUR
         elif row == (kind, other, 2 * other - joint, value) and kind == Move.PEEL:
-            rows.insert(-1, row)
+            rows.insert(-1, (row, SWAP))
         else:
-            rows.append(row)
+            rows.append((row, PLAIN))
     return rows
 
 

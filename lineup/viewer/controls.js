@@ -76,7 +76,8 @@ const MARKUP = `<div class="frame">
       <button type="button" data-do="forwards"></button><button type="button" data-do="backwards"></button>
     </div>
     <label class="speed">Speed <input class="speed" type="range" step="0.1"><output></output></label>
-    <label>Block <input class="block" type="number" min="1" placeholder="number"></label>
+    <label title="Blocks count from 1 at the first end, which a manual calls the head">Block
+      <input class="block" type="number" min="1" placeholder="number"></label>
   </div>
 </div>
 <aside class="drawer" aria-label="Details" hidden>
