@@ -6,7 +6,6 @@ import json
 import logging
 import re
 import warnings
-from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -23,16 +22,17 @@ MOST_PIECES = 5_000
 """Meshes, and places of meshes, that a file may have; trimesh takes a second for a thousand."""
 
 _COMPONENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
+_FACES = {".ply": rb"(?m)^\s*element\s+face\s+(\d+)", ".off": rb"OFF\s+\d+\s+(\d+)"}
 _HEAD = 2**16
 
 # What a file is refused for is said by an error, and not on stderr as well.
 logging.getLogger("trimesh").addHandler(logging.NullHandler())
 
 
-def triangles(data: bytes, ending: str, folder: Path) -> tuple[NDArray[Any], NDArray[Any]]:
+def triangles(data: bytes, ending: str, beside: Beside) -> tuple[NDArray[Any], NDArray[Any]]:
     """Vertices and triangles in a mesh file, of all its meshes in their places.
 
-    Nothing but the file is read, or beside a glTF file in `folder` those that it names.
+    Nothing else is read but what a glTF file names, which is then in `beside`.
 
     Raises
     ------
@@ -40,14 +40,14 @@ def triangles(data: bytes, ending: str, folder: Path) -> tuple[NDArray[Any], NDA
         If it cannot be read, ends early, or unfolds into more than `MOST_NUMBERS` or `MOST_PIECES`.
     """
     try:
-        data = _CHECKED.get(ending, bytes)(data)
+        data = _prepared(data, ending)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             # A file holding one mesh and a file holding a scene of placed meshes read alike.
             mesh = trimesh.load_scene(
                 BytesIO(data),
                 file_type=ending[1:],
-                resolver=_Beside(folder),
+                resolver=beside,
                 process=False,
                 skip_materials=True,
             ).to_mesh()
@@ -55,7 +55,7 @@ def triangles(data: bytes, ending: str, folder: Path) -> tuple[NDArray[Any], NDA
     except Exception as error:  # every reader of trimesh fails in its own way
         why = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise ValueError(f"cannot be read as a mesh: {why}") from error
-    declared = _DECLARED[ending](data) if ending in _DECLARED else 0
+    declared = _declared(data, ending)
     if len(faces) < declared:
         raise ValueError(
             f"cannot be read as a mesh: it speaks of {declared} faces, and {len(faces)} are there"
@@ -63,7 +63,7 @@ def triangles(data: bytes, ending: str, folder: Path) -> tuple[NDArray[Any], NDA
     return vertices, faces
 
 
-class _Beside(dict[str, bytes]):
+class Beside(dict[str, bytes]):
     """The files that a glTF file may name: those in its own folder, of `MOST_BYTES` in all."""
 
     def __init__(self, folder: Path) -> None:
@@ -75,33 +75,17 @@ class _Beside(dict[str, bytes]):
         return self[name]
 
 
-def _without_materials(data: bytes) -> bytes:
-    """An OBJ file as one mesh, not one for each change of material."""
-    return re.sub(rb"(?m)^\s*(usemtl|mtllib)\b.*$", b"", data)
-
-
-def _few_solids(data: bytes) -> bytes:
-    _check_most("solids", len(re.findall(rb"(?i)endsolid", data)), MOST_PIECES)
+def _prepared(data: bytes, ending: str) -> bytes:
+    """What trimesh is given of a file, once its claims are checked."""
+    if ending == ".obj":  # one mesh, not one for each change of material
+        return re.sub(rb"(?m)^\s*(usemtl|mtllib)\b.*$", b"", data)
+    if ending == ".stl":
+        _check_most("solids", len(re.findall(rb"(?i)endsolid", data)), MOST_PIECES)
+    if ending == ".gltf":
+        _check_claims(json.loads(data))
+    if ending == ".glb":
+        _check_claims(json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")]))
     return data
-
-
-def _honest_glb(data: bytes) -> bytes:
-    _check_claims(json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")]))
-    return data
-
-
-def _honest_gltf(data: bytes) -> bytes:
-    _check_claims(json.loads(data))
-    return data
-
-
-_CHECKED: dict[str, Callable[[bytes], bytes]] = {
-    ".obj": _without_materials,
-    ".stl": _few_solids,
-    ".glb": _honest_glb,
-    ".gltf": _honest_gltf,
-}
-"""What trimesh is given of a file, by its ending."""
 
 
 def _check_claims(header: dict[str, Any]) -> None:
@@ -130,26 +114,10 @@ def _check_most(what: str, n: int, most: int) -> None:
         raise ValueError(f"it claims {n:,} {what}, and up to {most:,} are read")
 
 
-def _declared_ply(data: bytes) -> int:
-    return _last_number(rb"(?m)^\s*element\s+face\s+(\d+)", data[:_HEAD])
-
-
-def _declared_off(data: bytes) -> int:
-    return _last_number(rb"OFF\s+\d+\s+(\d+)", re.sub(rb"#.*", b"", data[:_HEAD]))
-
-
-def _declared_stl(data: bytes) -> int:
-    return len(re.findall(rb"(?i)facet\s+normal", data))
-
-
-def _last_number(pattern: bytes, text: bytes) -> int:
-    found = re.search(pattern, text)
+def _declared(data: bytes, ending: str) -> int:
+    """How many faces a file says that it has; one that was cut short has fewer."""
+    if ending == ".stl":
+        return len(re.findall(rb"(?i)facet\s+normal", data))
+    head = re.sub(rb"#.*", b"", data[:_HEAD])
+    found = re.search(_FACES[ending], head) if ending in _FACES else None
     return int(found[1]) if found else 0
-
-
-_DECLARED: dict[str, Callable[[bytes], int]] = {
-    ".ply": _declared_ply,
-    ".off": _declared_off,
-    ".stl": _declared_stl,
-}
-"""How many faces a file says that it has, by its ending; a file cut short has fewer."""

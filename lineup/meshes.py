@@ -19,7 +19,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ._files import content
 from .grid import FloatArray
-from .mesh_files import triangles
+from .mesh_files import Beside, triangles
 
 FaceArray = NDArray[np.int64]
 
@@ -44,7 +44,8 @@ class Surface:
     vertices : (V, 3) float64
     faces : (F, 3) int64
     key : str
-        SHA-256 of the file or of the arrays, and what was done to them since.
+        SHA-256 of the file, with those that it names, or of the arrays, and what was done to them
+        since.
     provenance : dict
         What `VoxelSolid.source` will say about the input: plain JSON values.
     closed : bool
@@ -103,12 +104,13 @@ def read_surface(path: Path) -> Surface:
 
 @lru_cache(maxsize=16)
 def _read(path: Path, mtime_ns: int) -> Surface:
+    name, beside = repr(path.name), Beside(path.parent)
     try:
         data = content(path)
-        vertices, faces = triangles(data, path.suffix.lower(), path.parent)
+        vertices, faces = triangles(data, path.suffix.lower(), beside)
     except ValueError as error:
-        raise ValueError(f"{path.name!r} {error}") from error
-    name, digest = repr(path.name), hashlib.sha256(data).hexdigest()
+        raise ValueError(f"{name} {error}") from error
+    digest = hashlib.sha256(b"".join([data, *beside.values()])).hexdigest()
     provenance = {"kind": "mesh", "file": path.name, "sha256": digest}
     return _oriented(*_checked(vertices, faces, name), name, digest, provenance)
 

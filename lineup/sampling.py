@@ -17,6 +17,8 @@ _PILOTS = (48, 96, 192)
 _SEEN = 500
 """Cells that must lie inside for a volume to be believed, and estimated from them."""
 _MOST_CELLS = 100_000_000
+_MOST_PILOT_CELLS = 20_000_000
+"""A plate some 70,000 times as wide as thick needs so many to be seen at all."""
 _BATCH = 500_000
 _BLOCK = 4
 _MARGIN = 2
@@ -72,12 +74,13 @@ def sampled(surface: Surface, n_cells: int) -> Sampling:
     Raises
     ------
     ValueError
-        If the surface encloses too little volume for a lattice of 192^3 cells to see.
+        If the surface encloses too little volume for a lattice of 192^3 cells to see, or is a
+        plate or a needle that takes too many cells.
     """
     box = float(np.prod(np.ptp(surface.vertices, axis=0)))
     for across in _PILOTS:
         pilot = (box / across**3) ** (1 / 3)
-        seen = float(_filled_cells(surface, pilot)[0].sum())
+        seen = float(_filled_cells(surface, pilot, _MOST_PILOT_CELLS)[0].sum())
         if seen >= _SEEN:
             break
     if seen < _SEEN:
@@ -87,7 +90,7 @@ def sampled(surface: Surface, n_cells: int) -> Sampling:
         )
     # A lattice coarser than the one that first saw a thin plate might miss it.
     cell = min(pilot, max(pilot * (seen / n_cells) ** (1 / 3), (box / _MOST_CELLS) ** (1 / 3)))
-    fill, origin, edges = _filled_cells(surface, cell)
+    fill, origin, edges = _filled_cells(surface, cell, 2 * _MOST_CELLS)
     void = _voids(fill)
     fill[void] = 1.0
     table = np.zeros(tuple(s + 1 for s in fill.shape))
@@ -150,7 +153,7 @@ def _voids(fill: NDArray[np.float32]) -> BoolArray:
 
 
 def _filled_cells(
-    surface: Surface, cell: float
+    surface: Surface, cell: float, most: int
 ) -> tuple[NDArray[np.float32], FloatArray, FloatArray]:
     """The share of each cell that is inside, the lattice's lowest corner, and a cell's edges."""
     low, high = surface.vertices.min(axis=0), surface.vertices.max(axis=0)
@@ -162,7 +165,7 @@ def _filled_cells(
     else:
         edges = np.full(3, cell)
         shape = _BLOCK * np.ceil((extent / cell + 2 * _MARGIN) / _BLOCK)
-    if shape.prod() > 2 * _MOST_CELLS:
+    if shape.prod() > most:
         sides = " by ".join(f"{side:.3g}" for side in extent)
         raise ValueError(f"the mesh is too thin to be sampled: its bounding box is {sides}")
     origin = (low + high) / 2 - shape * edges / 2
