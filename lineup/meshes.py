@@ -77,8 +77,9 @@ def surface_of(mesh: object) -> Surface:
     FileNotFoundError
         If there is no such file.
     ValueError
-        If the file name's ending is not one of `FORMATS`, or the mesh is of another type, empty,
-        flat, or not made of triangles with finite vertices.
+        If the file name's ending is not one of `FORMATS`, the file is spoilt or unfolds into more
+        than is read (docs/formats.md), or the mesh is of another type, empty, flat, or not made of
+        triangles with finite vertices of up to `LARGEST`.
     """
     if isinstance(mesh, Surface):
         return mesh

@@ -85,8 +85,9 @@ def lineup(
     Raises
     ------
     ValueError
-        If there are no models, two that would be stored under one name, fewer than two blocks, the
-        seed is negative, or the joints are of no known kind.
+        If there are no models, two that would be stored under one name, one under a name that no
+        file can have, fewer than two blocks, the seed is negative, or the joints are of no known
+        kind.
 
     Examples
     --------

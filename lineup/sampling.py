@@ -17,8 +17,8 @@ _PILOTS = (48, 96, 192)
 _SEEN = 500
 """Cells that must lie inside for a volume to be believed, and estimated from them."""
 _MOST_CELLS = 100_000_000
-_MOST_PILOT_CELLS = 20_000_000
-"""A plate some 70,000 times as wide as thick needs so many to be seen at all."""
+_MOST_PILOT_CELLS = 12_000_000
+"""A plate 30,000 times as wide as thick takes so many to be seen at all."""
 _BATCH = 500_000
 _BLOCK = 4
 _MARGIN = 2
@@ -90,7 +90,7 @@ def sampled(surface: Surface, n_cells: int) -> Sampling:
         )
     # A lattice coarser than the one that first saw a thin plate might miss it.
     cell = min(pilot, max(pilot * (seen / n_cells) ** (1 / 3), (box / _MOST_CELLS) ** (1 / 3)))
-    fill, origin, edges = _filled_cells(surface, cell, 2 * _MOST_CELLS)
+    fill, origin, edges = _filled_cells(surface, cell)
     void = _voids(fill)
     fill[void] = 1.0
     table = np.zeros(tuple(s + 1 for s in fill.shape))
@@ -153,7 +153,7 @@ def _voids(fill: NDArray[np.float32]) -> BoolArray:
 
 
 def _filled_cells(
-    surface: Surface, cell: float, most: int
+    surface: Surface, cell: float, most: int = 2 * _MOST_CELLS
 ) -> tuple[NDArray[np.float32], FloatArray, FloatArray]:
     """The share of each cell that is inside, the lattice's lowest corner, and a cell's edges."""
     low, high = surface.vertices.min(axis=0), surface.vertices.max(axis=0)

@@ -86,7 +86,7 @@ def voxelize(
     FileNotFoundError
         If there is no such file.
     ValueError
-        If the mesh is empty, flat, not finite or of an unknown type, if `voxels` is not an integer
+        If the mesh is empty, flat, not finite, spoilt or of an unknown type, if `voxels` is not an integer
         from 1 to 2,000,000, or if `up` is no direction.
 
     Examples
