@@ -155,7 +155,8 @@ def read_experiment(file: str | os.PathLike[str]) -> Experiment:
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         where = f" in line {mark.line + 1}" if mark is not None else ""
-        raise ValueError(f"{path}: not YAML{where}: {getattr(error, 'problem', '')}") from None
+        why = getattr(error, "problem", None) or getattr(error, "reason", "")
+        raise ValueError(f"{path}: not YAML{where}: {why}") from None
     except ValidationError as error:
         raise ValueError(f"{path}: {first_error(error)}") from None
     except RecursionError:

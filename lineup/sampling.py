@@ -19,6 +19,8 @@ _SEEN = 500
 _MOST_CELLS = 100_000_000
 _MOST_PILOT_CELLS = 12_000_000
 """A plate 30,000 times as wide as thick takes so many to be seen at all."""
+_MOST_LINES = 2_000_000_000
+"""Vertical lines that are tried on all faces; a real mesh takes a tenth at most."""
 _BATCH = 500_000
 _BLOCK = 4
 _MARGIN = 2
@@ -177,8 +179,12 @@ def _fill(
 ) -> NDArray[np.float32]:
     if not surface.closed:
         return _inside_open(surface, origin, float(edges[0]), shape).astype(np.float32)
+    vertices = (surface.vertices - origin) / edges
+    boxes = 1 + _COLUMNS * np.ptp(vertices[surface.faces, :2], axis=1)
+    if boxes.prod(axis=1).sum() > _MOST_LINES:
+        raise ValueError("the mesh has too many large faces, one above the other, to be sampled")
     fill = np.zeros(shape, np.float32)
-    _cross_columns((surface.vertices - origin) / edges, surface.faces, fill)
+    _cross_columns(vertices, surface.faces, fill)
     np.cumsum(fill, axis=2, out=fill)
     return np.clip(fill, 0, 1, out=fill)
 
@@ -262,16 +268,23 @@ def _side(a: FloatArray, b: FloatArray, x: float, y: float) -> tuple[float, floa
 
 @kernel
 def _mark_surface(vertices: FloatArray, faces: FaceArray, touched: BoolArray) -> None:
-    """Set unit cells so that each point of the surface is in one of them or in a neighbour."""
+    """Set unit cells so that each point of the surface is in one of them or in a neighbour.
+
+    Along lines parallel to the shortest edge, so that a needle takes no more steps than its area.
+    """
+    edge = np.empty(3)
     for f in range(faces.shape[0]):
-        a = vertices[faces[f, 0]]
-        u = vertices[faces[f, 1]] - a
-        v = vertices[faces[f, 2]] - a
-        longest = np.sqrt(max((u * u).sum(), (v * v).sum(), ((u - v) ** 2).sum()))
-        n = max(1, int(np.ceil(longest / 0.9)))
+        for e in range(3):
+            along = vertices[faces[f, (e + 1) % 3]] - vertices[faces[f, e]]
+            edge[e] = np.sqrt((along * along).sum())
+        e = edge.argmin()
+        tip = vertices[faces[f, (e + 2) % 3]]
+        first, last = vertices[faces[f, e]] - tip, vertices[faces[f, (e + 1) % 3]] - tip
+        n = max(1, int(np.ceil(edge.max() / 0.9)))
         for i in range(n + 1):
-            for j in range(n + 1 - i):
-                p = a + (i / n) * u + (j / n) * v
+            m = max(1, int(np.ceil(edge[e] * i / n / 0.9)))
+            for j in range(m + 1):
+                p = tip + (i / n) * (first + (j / m) * (last - first))
                 touched[int(p[0]), int(p[1]), int(p[2])] = True
 
 

@@ -5,6 +5,7 @@ import os
 import re
 import subprocess
 import sys
+import time
 import warnings
 from dataclasses import replace
 from pathlib import Path
@@ -154,10 +155,21 @@ def test_faces_that_name_no_vertex_are_refused(tmp_path, name, index):
     refused(written(tmp_path, name, WRITERS[name](TETRAHEDRON, faces)))
 
 
+@pytest.mark.parametrize("n_faces", [3, 4])
 @pytest.mark.parametrize("extent", [(1e6, 1e6, 1), (1, 1e7, 1e7), (3e7, 1, 1)])
-def test_what_is_too_thin_is_refused_soon(extent):
+def test_what_is_too_thin_is_refused_soon(extent, n_faces):
+    begin = time.process_time()
     with pytest.raises(ValueError, match="too thin to be sampled: its bounding box is [13]"):
-        lu.voxelize((TETRAHEDRON * extent, FACES), 60)
+        lu.voxelize((TETRAHEDRON * extent, FACES[:n_faces]), 60)
+    assert time.process_time() - begin < 2
+
+
+def test_faces_that_all_lie_above_one_another_are_refused_soon():
+    faces = np.tile(FACES, (30_000, 1))
+    begin = time.process_time()
+    with pytest.raises(ValueError, match="too many large faces"):
+        lu.voxelize((TETRAHEDRON, faces), 60)
+    assert time.process_time() - begin < 5
 
 
 # Claims that would take all memory or all time

@@ -78,7 +78,8 @@ def test_aliases_do_not_multiply(tmp_path):
     refused(written(tmp_path, "laughs.yaml", "\n".join(lines)), "line 2: tags and aliases")
 
 
-def test_an_experiment_is_neither_deep_nor_long(tmp_path):
+def test_an_experiment_is_neither_deep_nor_long_nor_binary(tmp_path):
+    refused(written(tmp_path, "binary.yaml", "title: \0"), "special characters are not allowed")
     refused(written(tmp_path, "deep.yaml", "? " * 10**4), "nested too deeply")
     refused(written(tmp_path, "long.yaml", "#" * 2**19), "files of up to 65,536 are read")
 
