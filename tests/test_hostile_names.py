@@ -174,6 +174,43 @@ def test_a_film_of_a_kind_that_leads_elsewhere_is_refused(ends_badly):
     assert "cannot be the name" in said
 
 
+FOLDING = "..$a..folding.json"
+COMMANDS = {
+    "unfold": ["..$a..path.json"],
+    "transform": [FOLDING, FOLDING],
+    "play": [FOLDING],
+    "robot": [FOLDING],
+    "manual": [FOLDING],
+    "strength": [FOLDING],
+    "animate": [FOLDING, "--pictures", "3"],
+    "print": ["evil.design.json"],
+    "verify": ["evil.design.json"],
+}
+SLOW = ("manual", "strength", "animate", "print")
+
+
+@pytest.mark.parametrize(
+    "command", [pytest.param(c, marks=[pytest.mark.slow] * (c in SLOW)) for c in COMMANDS]
+)
+def test_a_command_writes_into_its_folder_alone(tmp_path, monkeypatch, command):
+    """Whatever the file is called, and the models in it."""
+    inner = tmp_path / "inner" / "most"
+    inner.mkdir(parents=True)
+    monkeypatch.chdir(inner)
+    design = a_design()
+    chain = lu.fold(design.models[0], rounds=20, trial_rounds=5)
+    lu.save(chain.path, "..$a..path.json")
+    lu.save(chain, FOLDING)
+    solid = replace(design.models[0], name="../../evil")
+    lu.save(replace(design, models=(solid,), foldings=(chain,)), "evil.design.json")
+    before = sorted(tmp_path.rglob("*"))
+    out = [] if command == "verify" else ["--out", "out"]
+    assert cli.run([command, *COMMANDS[command], *out]) in (0, 1)
+    new = [file for file in sorted(tmp_path.rglob("*")) if file not in before]
+    assert [file for file in new if inner / "out" not in (file, *file.parents)] == []
+    assert bool(new) == bool(out)
+
+
 @pytest.mark.parametrize("name", ELSEWHERE)
 def test_the_library_refuses_names_that_lead_elsewhere(tmp_path, name):
     design = a_design()
