@@ -21,6 +21,9 @@ _MOST_PILOT_CELLS = 12_000_000
 """A plate 30,000 times as wide as thick takes so many to be seen at all."""
 _MOST_LINES = 2_000_000_000
 """Vertical lines that are tried on all faces; a real mesh takes a tenth at most."""
+_MOST_AREA = 100
+"""Of all faces, in areas of the bounding box; a real mesh seldom has ten."""
+_HEAP = "the mesh has too many large faces, one above the other, to be sampled"
 _BATCH = 500_000
 _BLOCK = 4
 _MARGIN = 2
@@ -76,10 +79,15 @@ def sampled(surface: Surface, n_cells: int) -> Sampling:
     Raises
     ------
     ValueError
-        If the surface encloses too little volume for a lattice of 192^3 cells to see, or is a
-        plate or a needle that takes too many cells.
+        If the surface encloses too little volume for a lattice of 192^3 cells to see, is a plate
+        or a needle that takes too many cells, or a heap of large faces.
     """
-    box = float(np.prod(np.ptp(surface.vertices, axis=0)))
+    sides = np.ptp(surface.vertices, axis=0)
+    box = float(np.prod(sides))
+    u, v = np.diff(surface.vertices[surface.faces], axis=1).transpose(1, 0, 2)
+    area = float(np.linalg.norm(np.cross(u, v), axis=1).sum()) / 2
+    if area > _MOST_AREA * 2 * float((sides * np.roll(sides, 1)).sum()):
+        raise ValueError(_HEAP)
     for across in _PILOTS:
         pilot = (box / across**3) ** (1 / 3)
         seen = float(_filled_cells(surface, pilot, _MOST_PILOT_CELLS)[0].sum())
@@ -182,7 +190,7 @@ def _fill(
     vertices = (surface.vertices - origin) / edges
     boxes = 1 + _COLUMNS * np.ptp(vertices[surface.faces, :2], axis=1)
     if boxes.prod(axis=1).sum() > _MOST_LINES:
-        raise ValueError("the mesh has too many large faces, one above the other, to be sampled")
+        raise ValueError(_HEAP)
     fill = np.zeros(shape, np.float32)
     _cross_columns(vertices, surface.faces, fill)
     np.cumsum(fill, axis=2, out=fill)
@@ -277,12 +285,12 @@ def _mark_surface(vertices: FloatArray, faces: FaceArray, touched: BoolArray) ->
         for e in range(3):
             along = vertices[faces[f, (e + 1) % 3]] - vertices[faces[f, e]]
             edge[e] = np.sqrt((along * along).sum())
-        e = edge.argmin()
-        tip = vertices[faces[f, (e + 2) % 3]]
-        first, last = vertices[faces[f, e]] - tip, vertices[faces[f, (e + 1) % 3]] - tip
+        short = int(edge.argmin())
+        tip = vertices[faces[f, (short + 2) % 3]]
+        first, last = vertices[faces[f, short]] - tip, vertices[faces[f, (short + 1) % 3]] - tip
         n = max(1, int(np.ceil(edge.max() / 0.9)))
         for i in range(n + 1):
-            m = max(1, int(np.ceil(edge[e] * i / n / 0.9)))
+            m = max(1, int(np.ceil(edge[short] * i / n / 0.9)))
             for j in range(m + 1):
                 p = tip + (i / n) * (first + (j / m) * (last - first))
                 touched[int(p[0]), int(p[1]), int(p[2])] = True

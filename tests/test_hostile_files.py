@@ -164,11 +164,25 @@ def test_what_is_too_thin_is_refused_soon(extent, n_faces):
     assert time.process_time() - begin < 5
 
 
-def test_faces_that_all_lie_above_one_another_are_refused_soon():
-    faces = np.tile(FACES, (30_000, 1))
+SLIVER = TETRAHEDRON * 1e-3 + [[0, 0, 0], [0, 0, 0], [0, 0, 0], [1, 1, 1]]
+
+
+@pytest.mark.parametrize(
+    ("vertices", "faces"),
+    [
+        (TETRAHEDRON, np.tile(FACES, (2000, 1))),
+        (TETRAHEDRON, np.tile(FACES[:3], (2000, 1))),
+        (
+            np.vstack([SLIVER + 1e-6 * k for k in range(30_000)]),
+            np.vstack([FACES + 4 * k for k in range(30_000)]),
+        ),
+    ],
+    ids=["closed", "open", "slivers"],
+)
+def test_a_heap_of_large_faces_is_refused_soon(vertices, faces):
     begin = time.process_time()
-    with pytest.raises(ValueError, match="too many large faces"):
-        lu.voxelize((TETRAHEDRON, faces), 60)
+    with pytest.raises(ValueError, match="too many large faces, one above the other"):
+        lu.voxelize((vertices, faces), 60)
     assert time.process_time() - begin < 5
 
 
