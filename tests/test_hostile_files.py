@@ -1,4 +1,4 @@
-"""Files that mean harm: an error in one line, soon and in little memory; nothing run or written."""
+"""Files that mean harm end in one line that says why, soon and in little memory."""
 
 import json
 import os
