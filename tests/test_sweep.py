@@ -110,7 +110,7 @@ def test_other_settings_input_or_source_are_other_tasks(calls, tmp_path, monkeyp
 
 def test_source_files_follow_imports():
     names = [file.stem for file in source_files("lineup.storage")]
-    assert names == ["_record", "grid", "kinematics", "notation", "solid", "storage"]
+    assert names == ["_files", "_record", "grid", "kinematics", "notation", "solid", "storage"]
 
 
 def test_an_interrupted_run_resumes(calls, tmp_path):

@@ -49,12 +49,13 @@ def _run_experiment(
     workers: int | None,
     scheduler: str | None = None,
 ) -> None:
+    from .._files import plain_name
     from .._progress import Reporter
     from ..experiment import read_experiment, tasks
     from ..sweep import run_sweep
 
     experiment = read_experiment(file)
-    name = file.stem if variant is None else f"{file.stem}-{variant}"
+    name = plain_name(file.stem if variant is None else f"{file.stem}-{variant}")
     screen = console()
     todo = tasks(experiment, out / name, variant)
     with Reporter(len(todo), screen) as reporter:
