@@ -19,6 +19,7 @@ import pandas as pd
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
 
 from . import grid, notation
+from ._files import whole
 from .solid import Certificate, Design, Folding, Motion, VoxelPath, VoxelSolid
 
 Record: TypeAlias = VoxelSolid | VoxelPath | Motion | Folding | Design
@@ -116,9 +117,8 @@ def write_whole(file: Path, text: str) -> Path:
     """Write a text file so that a reader meets the old file or the new one, never a part."""
     if not file.parent.is_dir():
         raise FileNotFoundError(f"no folder {file.parent} to write {file.name} into")
-    part = file.with_name(file.name + ".tmp")
-    part.write_text(text, encoding="utf-8")
-    os.replace(part, file)
+    with whole(file) as half:
+        half.write_text(text, encoding="utf-8")
     return file
 
 

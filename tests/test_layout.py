@@ -19,6 +19,7 @@ ROOT = Path(__file__).parents[1]
 ORDER = [
     *(
         "_record",
+        "_files",
         "_options",
         "_jit",
         "grid",
