@@ -154,16 +154,15 @@ def _try_to_write(folder):
         sys.exit(1)
 
 
-def started(*args, before=None, log=None, **environment):
-    """The installed command as a process in a process group of its own."""
+def started(*args, place, log=None):
+    """The installed command in a process group of its own, started in a folder."""
     command = [Path(sys.executable).with_name("lineup"), *map(str, args)]
-    path = os.pathsep.join([str(_ROOT), str(_ROOT / "tests")])
     return subprocess.Popen(
         command,
         stdout=subprocess.DEVNULL if log is None else log.open("w"),
         stderr=subprocess.STDOUT,
-        env=os.environ | {"PYTHONPATH": path} | environment,
-        preexec_fn=before,
+        cwd=place,
+        env=os.environ | {"PYTHONPATH": str(_ROOT)},
         start_new_session=True,
     )
 

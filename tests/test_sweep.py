@@ -169,7 +169,7 @@ def test_other_settings_input_or_source_are_other_tasks(calls, tmp_path, monkeyp
 
 def test_source_files_follow_imports():
     names = [file.stem for file in source_files("lineup.storage")]
-    assert names == ["_record", "grid", "kinematics", "notation", "solid", "storage"]
+    assert names == ["_files", "_record", "grid", "kinematics", "notation", "solid", "storage"]
 
 
 def test_an_interrupted_run_resumes(calls, tmp_path):
@@ -284,11 +284,15 @@ def test_no_process_outlives_a_run_that_is_ended(calls, tmp_path, end):
         text=True,
         start_new_session=True,
     )
-    assert sorted(run.stdout.readline() for _ in range(2)) == ["0\n", "1\n"]
-    assert len(members(run.pid)) >= 3
-    run.send_signal(end)
-    run.communicate(timeout=20)
-    wait_until(lambda: not members(run.pid), seconds=5)
+    try:
+        assert sorted(run.stdout.readline() for _ in range(2)) == ["0\n", "1\n"]
+        assert len(members(run.pid)) >= 3
+        run.send_signal(end)
+        run.wait(timeout=20)
+        wait_until(lambda: not members(run.pid), seconds=5)
+    finally:
+        for pid in members(run.pid):
+            os.kill(pid, signal.SIGKILL)
 
 
 BAD = {
