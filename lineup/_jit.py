@@ -63,7 +63,7 @@ class _Folder(_UserFolder):  # type: ignore[misc]
             super().ensure_cache_path()
 
 
-class _Code(CompileResultCacheImpl):  # type: ignore[misc]
+class _Code(CompileResultCacheImpl):
     """Machine code as it is kept: with a digest, since running spoilt code may do anything."""
 
     _locator_classes = [_Folder, *CompileResultCacheImpl._locator_classes[1:]]
@@ -79,7 +79,7 @@ class _Code(CompileResultCacheImpl):  # type: ignore[misc]
         return super().rebuild(target, pickle.loads(code))
 
 
-class _Cache(FunctionCache):  # type: ignore[misc]
+class _Cache(FunctionCache):
     """Machine code on disk. Where it cannot be read or written, a run goes on without, and says so.
 
     Numba by itself ends the run.

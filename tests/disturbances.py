@@ -93,9 +93,9 @@ def disturbed(fault, folder, number):
     operations = itertools.count()
 
     def hook(event, args):
-        if event in OPERATIONS and str(args[0]).startswith(str(folder)):
-            if next(operations) == number:
-                fault()
+        is_one = event in OPERATIONS and str(args[0]).startswith(str(folder))
+        if is_one and next(operations) == number:
+            fault()
 
     return lambda: sys.addaudithook(hook)
 
@@ -178,7 +178,7 @@ def wait_until(is_so, seconds=PATIENCE):
 def members(group):
     """The processes of a process group, by their numbers: what each was started as."""
     listed = subprocess.run(
-        ["ps", "-eo", "pid=,pgid=,stat=,args="], capture_output=True, text=True, check=True
+        ["ps", "-ww", "-eo", "pid=,pgid=,stat=,args="], capture_output=True, text=True, check=True
     ).stdout
     rows = [line.split(None, 3) for line in listed.splitlines()]
     return {int(pid): args for pid, of, stat, args in rows if int(of) == group and stat[0] != "Z"}

@@ -159,17 +159,17 @@ plot: {x: voxels, y: coverage, by: method}
 COMMANDS = {"sweep": ("sweep", "duck.yaml"), "table2": ("table2", "--quick")}
 
 
-@pytest.fixture(scope="module")
-def place(tmp_path_factory):
-    """A folder with an experiment, for the installed command."""
-    place = tmp_path_factory.mktemp("commands")
-    (place / "duck.yaml").write_text(SWEEP)
-    return place
-
-
 @pytest.fixture(scope="module", params=COMMANDS)
 def command(request):
     return COMMANDS[request.param]
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory, command):
+    """A folder for the results of a command, with an experiment."""
+    place = tmp_path_factory.mktemp(command[0])
+    (place / "duck.yaml").write_text(SWEEP)
+    return place
 
 
 @pytest.fixture(scope="module")
@@ -181,25 +181,30 @@ def alone(place, command):
 
 
 def rows(results):
+    """How many tasks are done."""
     return len(list(results.glob("*/*/row.json")))
+
+
+def wait_for_rows(run, results, number):
+    """Wait until so many tasks are done, or all."""
+    wait_until(lambda: run.poll() is not None or rows(results) >= number)
 
 
 @pytest.mark.slow
 def test_a_command_that_is_ended_again_and_again_completes(place, command, alone):
     results, luck = place / "ended", random.Random(5)
-    ends = [signal.SIGKILL, signal.SIGINT] * 3
     n_hit = 0
-    for end in ends:
-        n_before, n_more = rows(results), luck.randrange(2)
+    for end in [signal.SIGKILL, signal.SIGINT] * 3:
+        n_rows = rows(results)
         with started(*command, "--out", results, "--workers", 2, place=place) as run:
-            wait_until(lambda: run.poll() is not None or rows(results) >= n_before + n_more)
+            wait_for_rows(run, results, n_rows + luck.randrange(2))
             time.sleep(luck.uniform(0, 4))
             n_hit += run.poll() is None
             run.send_signal(end)
-        wait_until(lambda: not members(run.pid), seconds=10)
+        wait_until(lambda group=run.pid: not members(group), seconds=10)
+        assert rows(results) >= n_rows
         found = {k: v for k, v in contents(results).items() if not k.endswith(".tmp")}
         assert found == {name: alone[name] for name in found}
-        assert rows(results) >= n_before + n_more
     assert n_hit >= 3
     with started(*command, "--out", results, "--workers", 2, place=place) as run:
         assert run.wait(PATIENCE) == 0
@@ -210,7 +215,7 @@ def test_a_command_that_is_ended_again_and_again_completes(place, command, alone
 def test_a_worker_that_crashes_costs_the_others_nothing(place, command, alone):
     results, log = place / "crashed", place / "crashed.log"
     with started(*command, "--out", results, "--workers", 2, place=place, log=log) as run:
-        wait_until(lambda: rows(results) > 0)
+        wait_for_rows(run, results, 1)
         worker = next(pid for pid, args in members(run.pid).items() if "spawn_main" in args)
         os.kill(worker, signal.SIGSEGV)
         assert run.wait(PATIENCE) == 1

@@ -143,11 +143,11 @@ def test_spoilt_machine_code_is_compiled_anew_and_this_is_told(kept, ending, dam
 
 
 def test_where_no_machine_code_can_be_kept_a_kernel_runs_and_this_is_told(kept, tmp_path):
-    call, files = kept
+    call, _ = kept
     (tmp_path / "kernels").touch()
     with pytest.warns(RuntimeWarning, match="kernels cannot be kept.* NUMBA_CACHE_DIR can name"):
         assert call() == (42, False)
-    assert not list((tmp_path).rglob("*.nb?"))
+    assert not list(tmp_path.rglob("*.nb?"))
 
 
 def test_on_a_full_disk_a_kernel_runs_and_the_next_keeps_its_code(kept):
