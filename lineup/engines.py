@@ -107,15 +107,20 @@ class _Worker:
     def start(cls, function: Function) -> "_Worker":
         context = multiprocessing.get_context("spawn")
         ours, theirs = context.Pipe()
-        process = context.Process(target=_serve, args=(theirs, function), daemon=True)
+        process = context.Process(target=_serve, args=(theirs,), daemon=True)
         process.start()
         theirs.close()  # so that the death of the process ends what we read
-        return cls(process, ours)
+        worker = cls(process, ours)
+        worker._send(function)
+        return worker
 
     def give(self, number: int, job: Row) -> None:
         self.job, self.busy, self.begin = number, True, time.perf_counter()
+        self._send(job)
+
+    def _send(self, message: Function | Row) -> None:
         with suppress(BrokenPipeError):  # it died just now, as `heard` will tell
-            self.connection.send(job)
+            self.connection.send(message)
 
     def heard(self) -> str | Outcome:
         """The next stage the job reports, or its outcome; a dead process is an outcome too."""
@@ -133,15 +138,15 @@ class _Worker:
         return f"the process died ({how})"
 
 
-def _serve(connection: Connection, function: Function) -> None:
+def _serve(connection: Connection) -> None:
+    """Run the jobs that are sent, by the function sent first: to receive it takes its imports."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent decides what an interrupt ends
     Thread(target=_end_with_parent, daemon=True).start()
-    while True:
-        try:
+    with suppress(EOFError, BrokenPipeError):  # the parent ends just now
+        function = connection.recv()
+        while True:
             job = connection.recv()
-        except EOFError:
-            return
-        connection.send(outcome_of(function, job, connection.send))
+            connection.send(outcome_of(function, job, connection.send))
 
 
 def _end_with_parent() -> None:
