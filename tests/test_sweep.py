@@ -262,22 +262,40 @@ ENDLESS = """
 import sys
 from pathlib import Path
 
-import fake_tasks
 from lineup import engines
 
 if __name__ == "__main__":
+    import late_task
+
     jobs = [dict(model="endless", blocks=k, folder=Path(sys.argv[1])) for k in range(2)]
-    for _ in engines.processes(fake_tasks.work, jobs, 2, lambda k, stage: print(k, flush=True)):
+    for _ in engines.processes(late_task.work, jobs, 2, lambda k, stage: print(k, flush=True)):
         pass
 """
 
+LATE = """
+import multiprocessing
+import time
 
-@pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
-def test_no_process_outlives_a_run_that_is_ended(calls, tmp_path, end):
-    script = tmp_path / "script.py"
-    script.write_text(ENDLESS)
+import fake_tasks
+
+if multiprocessing.current_process().name != "MainProcess":
+    time.sleep({seconds})
+
+
+def work(**job):
+    return fake_tasks.work(**job)
+"""
+
+
+@pytest.mark.parametrize(
+    ("end", "seconds"), [(signal.SIGKILL, 0), (signal.SIGTERM, 0), (signal.SIGINT, 0), (9, 3600)]
+)
+def test_no_process_outlives_a_run_that_is_ended(calls, tmp_path, end, seconds):
+    """Its workers are amid their jobs, or still import what they run."""
+    (tmp_path / "script.py").write_text(ENDLESS)
+    (tmp_path / "late_task.py").write_text(LATE.format(seconds=seconds))
     run = subprocess.Popen(
-        [sys.executable, script, tmp_path],
+        [sys.executable, tmp_path / "script.py", tmp_path],
         env=os.environ | {"PYTHONPATH": PLACES},
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
@@ -285,8 +303,11 @@ def test_no_process_outlives_a_run_that_is_ended(calls, tmp_path, end):
         start_new_session=True,
     )
     try:
-        assert sorted(run.stdout.readline() for _ in range(2)) == ["0\n", "1\n"]
-        assert len(members(run.pid)) >= 3
+        if seconds:
+            wait_until(lambda: len(members(run.pid)) == 4, seconds=20)  # one tracks resources
+            time.sleep(1)
+        else:
+            assert sorted(run.stdout.readline() for _ in range(2)) == ["0\n", "1\n"]
         run.send_signal(end)
         run.wait(timeout=20)
         wait_until(lambda: not members(run.pid), seconds=5)
