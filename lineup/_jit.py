@@ -5,7 +5,7 @@ import os
 import pickle
 import warnings
 from collections.abc import Callable
-from contextlib import suppress
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
@@ -58,9 +58,9 @@ def _compiled(function: F, **options: bool) -> Any:
 class _Folder(_UserFolder):  # type: ignore[misc]
     """Where machine code is kept, even if nothing new can be: what is there may be read."""
 
-    def ensure_cache_path(self) -> None:
-        with suppress(OSError):  # as `_Cache` will tell, if anything is to be kept
-            super().ensure_cache_path()
+    @classmethod
+    def from_function(cls, function: Any, file: str) -> Any:
+        return cls(function, file) if Path(file).exists() else None
 
 
 class _Code(CompileResultCacheImpl):
@@ -114,7 +114,13 @@ class _Cache(FunctionCache):
     def _warn(self, fate: str, error: Exception) -> None:
         folder = Path(self.cache_path).parent  # the same for all kernels, so that it is told once
         why = getattr(error, "strerror", None) or type(error).__name__
-        warnings.warn(f"machine code in {folder} {fate} ({why})", RuntimeWarning, stacklevel=1)
+        _warn_once(f"machine code in {folder} {fate} ({why})")
+
+
+@lru_cache
+def _warn_once(text: str) -> None:
+    """Numba makes Python forget which warnings it has shown."""
+    warnings.warn(text, RuntimeWarning, stacklevel=1)
 
 
 def _cache_folder() -> Path:
