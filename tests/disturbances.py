@@ -29,6 +29,7 @@ ROOM = 100
 
 OPERATIONS = ("open", "os.mkdir", "os.rename", "os.remove")
 
+_REFUSED = 13
 _ROOT = Path(__file__).parents[1]
 _CELL = re.compile(r"<t[hd].*?</t[hd]>", re.S)
 _CAP_DAC_OVERRIDE, _PR_CAPBSET_DROP, _CAPABILITY_VERSION_3 = 1, 24, 0x20080522
@@ -114,7 +115,8 @@ def fill_disk():
     """From now on, only a few bytes can be written into each file."""
     import resource
 
-    resource.setrlimit(resource.RLIMIT_FSIZE, (ROOM, resource.RLIM_INFINITY))
+    _, most = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (ROOM, most))
 
 
 def kill_amid_writing():
@@ -143,7 +145,7 @@ def refuses(folder):
     process = multiprocessing.get_context("fork").Process(target=_try_to_write, args=(folder,))
     process.start()
     process.join()
-    return process.exitcode == 1
+    return process.exitcode == _REFUSED
 
 
 def _try_to_write(folder):
@@ -151,7 +153,7 @@ def _try_to_write(folder):
     try:
         (folder / "written").touch()
     except PermissionError:
-        sys.exit(1)
+        sys.exit(_REFUSED)
 
 
 def started(*args, place, log=None):
