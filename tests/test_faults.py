@@ -236,9 +236,8 @@ def test_the_number_of_workers_changes_nothing(place, command, alone, workers):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("command", ["sweep"], indirect=True, scope="module")
 def test_a_cluster_changes_nothing(place, command, alone):
-    if command[0] != "sweep":
-        pytest.skip("Table 2 is not asked of a cluster by its own command")
     distributed = pytest.importorskip("distributed")
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=str(place)
