@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from glob import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -49,7 +50,7 @@ def _run_experiment(
     workers: int | None,
     scheduler: str | None = None,
 ) -> None:
-    from .._files import plain_name
+    from .._files import clear, plain_name
     from .._progress import Reporter
     from ..experiment import read_experiment, tasks
     from ..sweep import run_sweep
@@ -68,6 +69,7 @@ def _run_experiment(
             scheduler=scheduler,
             progress=lambda task, stage: reporter(task.label, stage),
         )
+    clear(out, f"{escape(name)}*")
     write = _write_table2 if experiment.task == "table2" else _write_rows
     table, view, written = write(rows, todo, experiment, out, name)
     screen.print(view)
