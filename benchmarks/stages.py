@@ -18,7 +18,7 @@ import lineup as lu
 app = typer.Typer(add_completion=False, help=__doc__)
 
 SIZES = [1000, 3000, 10_000, 30_000, 100_000, 300_000, 1_000_000]
-LARGEST = {"certify": 1_000_000, "trim": 30_000, "print files": 10_000, "strength": 10_000}
+LARGEST = {"print files": 10_000, "strength": 10_000}
 """Stages that are not given larger solids, whatever the limit."""
 WARM_UP = 60
 

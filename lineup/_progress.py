@@ -22,8 +22,8 @@ from rich.text import Text
 class Reporter:
     """Shows `total` jobs by name: call it with a name and the stage that job has reached.
 
-    A stage "done", "kept" or "failed: why" ends the job. The time left is told from the time that
-    jobs have taken so far; those that were kept took none.
+    A stage "done", "kept" or "failed: why" ends the job, and "made anew: why" comes before it. The
+    time left is told from the time that jobs have taken so far; those that were kept took none.
     """
 
     def __init__(
@@ -69,10 +69,11 @@ class Reporter:
         if ended and stage != "kept":
             each = (self._clock() - self._begin) / (self._n_ended - self._n_kept)
             self._end = self._clock() + each * (self._total - self._n_ended)
+        noted = stage.startswith("made anew: ")
         self._running.pop(name, None)
-        if not ended:
+        if not ended and not noted:
             self._running[name] = stage
-        if ended or not self._console.is_terminal:
+        if ended or noted or not self._console.is_terminal:
             count = f"[{self._n_ended}/{self._total}]"
             plain = ended and not self._console.is_terminal  # a terminal has it beside the bar
             left = f" ({self.left()})" if plain and self.left() else ""

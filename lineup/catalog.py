@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import difflib
+import hashlib
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -14,6 +15,7 @@ from typing import Any
 import pandas as pd
 import pooch  # type: ignore[import-untyped]
 
+from ._files import content
 from .meshes import Surface, read_surface, surface_of, turned_upright
 from .shapes import triangulated
 from .shells import Thickness
@@ -221,12 +223,12 @@ def _upright_surface(entry: _Entry) -> Surface:
     if folder_file:
         surface, kind, up = read_surface(folder_file), "folder", "+z"
     elif entry.origin == "original":
-        surface, kind, up = read_surface(entry.in_cache), "original", entry.up
-        if surface.provenance["sha256"] != entry.sha256:
+        if hashlib.sha256(content(entry.in_cache)).hexdigest() != entry.sha256:
             raise ValueError(
                 f"the fetched {entry.in_cache.name} is not the file of the catalogue: "
                 "fetch it again, or delete it to use the procedural stand-in"
             )
+        surface, kind, up = read_surface(entry.in_cache), "original", entry.up
     else:
         surface, kind, up = _procedural(entry.name), "procedural", "+z"
     surface = replace(surface, provenance={**surface.provenance, "kind": kind})

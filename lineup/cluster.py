@@ -11,6 +11,7 @@ from tempfile import TemporaryDirectory
 from typing import Any, TypeAlias
 from uuid import uuid4
 
+from ._files import whole
 from .engines import Function, Outcome, Report, Row, outcome_of
 
 PATIENCE = 30.0
@@ -108,9 +109,8 @@ def away(function: Function, job: Row, topic: str, k: int) -> tuple[dict[str, An
 
 def _write_bytes(file: Path, content: bytes) -> None:
     file.parent.mkdir(parents=True, exist_ok=True)
-    half = file.with_name(f"{file.name}.tmp")
-    half.write_bytes(content)
-    half.replace(file)
+    with whole(file) as half:
+        half.write_bytes(content)
 
 
 @contextmanager

@@ -6,15 +6,18 @@ down with it, ends in an outcome with a reason; the others go on.
 """
 
 import multiprocessing
+import os
 import signal
 import time
 import traceback
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import SpawnProcess
+from threading import Thread
 from typing import Any, TypeAlias
 
 Row: TypeAlias = dict[str, Any]
@@ -65,6 +68,8 @@ def processes(
     finally:
         for worker in pool:
             worker.process.kill()
+        for worker in pool:
+            worker.process.join()
 
 
 ENGINES = {"serial": serial, "processes": processes}
@@ -102,14 +107,20 @@ class _Worker:
     def start(cls, function: Function) -> "_Worker":
         context = multiprocessing.get_context("spawn")
         ours, theirs = context.Pipe()
-        process = context.Process(target=_serve, args=(theirs, function), daemon=True)
+        process = context.Process(target=_serve, args=(theirs,), daemon=True)
         process.start()
         theirs.close()  # so that the death of the process ends what we read
-        return cls(process, ours)
+        worker = cls(process, ours)
+        worker._send(function)
+        return worker
 
     def give(self, number: int, job: Row) -> None:
         self.job, self.busy, self.begin = number, True, time.perf_counter()
-        self.connection.send(job)
+        self._send(job)
+
+    def _send(self, message: Function | Row) -> None:
+        with suppress(BrokenPipeError):  # it died just now, as `heard` will tell
+            self.connection.send(message)
 
     def heard(self) -> str | Outcome:
         """The next stage the job reports, or its outcome; a dead process is an outcome too."""
@@ -127,11 +138,20 @@ class _Worker:
         return f"the process died ({how})"
 
 
-def _serve(connection: Connection, function: Function) -> None:
+def _serve(connection: Connection) -> None:
+    """Run the jobs that are sent, by the function sent first: to receive it takes its imports."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent decides what an interrupt ends
-    while True:
-        try:
+    Thread(target=_end_with_parent, daemon=True).start()
+    with suppress(EOFError, BrokenPipeError):  # the parent ends just now
+        function = connection.recv()
+        while True:
             job = connection.recv()
-        except EOFError:
-            return
-        connection.send(outcome_of(function, job, connection.send))
+            connection.send(outcome_of(function, job, connection.send))
+
+
+def _end_with_parent() -> None:
+    """Wait for the end of the parent, however it ends, and end this process amid its job."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import math
 import os
 import re
 from dataclasses import dataclass
@@ -19,6 +20,7 @@ import yaml
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
 from . import catalog
+from ._files import content, plain_name
 from ._sources import digest, source_digest
 from .engines import Function
 from .storage import first_error
@@ -37,6 +39,10 @@ Besides its settings a task is given `folder`, a Path to save what it makes in, 
 be called with the name of each stage it begins. `COLUMNS` of its module, if there, names what is
 in the row.
 """
+MOST_BYTES = 2**16
+"""Of an experiment file."""
+MOST_TASKS = 10_000
+"""That one experiment may run."""
 
 
 def _scalar(value: object) -> object:
@@ -120,6 +126,18 @@ class Task:
         return self.folder / "row.json"
 
 
+class _Loader(yaml.SafeLoader):
+    """YAML without tags, and without aliases, which unfold into more than any memory holds."""
+
+    def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
+        event = self.peek_event()  # type: ignore[no-untyped-call]
+        if isinstance(event, yaml.AliasEvent) or getattr(event, "tag", None) is not None:
+            raise yaml.MarkedYAMLError(
+                problem="tags and aliases are not read", problem_mark=event.start_mark
+            )
+        return super().compose_node(parent, index)
+
+
 def read_experiment(file: str | os.PathLike[str]) -> Experiment:
     """Read and check an experiment file.
 
@@ -132,13 +150,19 @@ def read_experiment(file: str | os.PathLike[str]) -> Experiment:
     if not path.is_file():
         raise FileNotFoundError(f"no experiment file {path}")
     try:
-        return Experiment.model_validate(yaml.safe_load(path.read_text(encoding="utf-8")))
+        text = content(path, MOST_BYTES).decode()
+        return Experiment.model_validate(yaml.load(text, _Loader))
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         where = f" in line {mark.line + 1}" if mark is not None else ""
-        raise ValueError(f"{path}: not YAML{where}: {getattr(error, 'problem', '')}") from None
+        why = getattr(error, "problem", None) or getattr(error, "reason", "")
+        raise ValueError(f"{path}: not YAML{where}: {why}") from None
     except ValidationError as error:
         raise ValueError(f"{path}: {first_error(error)}") from None
+    except RecursionError:
+        raise ValueError(f"{path}: its lists are nested too deeply") from None
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
 
 
 def tasks(experiment: Experiment, folder: Path, variant: str | None = None) -> list[Task]:
@@ -147,7 +171,8 @@ def tasks(experiment: Experiment, folder: Path, variant: str | None = None) -> l
     Raises
     ------
     ValueError
-        If the task, the variant, a setting or a column is unknown, or a combination stands twice.
+        If the task, the variant, a setting or a column is unknown, a combination stands twice, or
+        there are more than `MOST_TASKS`.
     """
     if experiment.task not in TASKS:
         raise ValueError(f"unknown task {experiment.task!r}; known: {', '.join(TASKS)}")
@@ -157,13 +182,16 @@ def tasks(experiment: Experiment, folder: Path, variant: str | None = None) -> l
         raise ValueError(f"unknown variant {variant!r}; this experiment has: {known}")
     grids = experiment.grids if variant is None else experiment.variants[variant]
     _check_columns(experiment, function)
+    n_tasks = sum(math.prod(map(len, axes.values())) for axes in grids)
+    if n_tasks > MOST_TASKS:
+        raise ValueError(f"the grids make {n_tasks:,} tasks, and up to {MOST_TASKS:,} are run")
     code = source_digest(function.__module__)
     found: dict[str, Task] = {}
     for axes in grids:
         for values in itertools.product(*axes.values()):
             settings = experiment.fixed | dict(zip(axes, values, strict=True))
             _check_settings(function, experiment.task, settings)
-            label = _label(values)
+            label = plain_name(_label(values))
             if label in found:
                 raise ValueError(f"two tasks would both be called {label!r}")
             key = key_of(settings, code)
@@ -225,8 +253,8 @@ def _inputs(settings: dict[str, Scalar]) -> list[bytes]:
     meshes = os.environ.get(catalog.FOLDER_VARIABLE)
     found: list[bytes] = []
     for value in settings.values():
-        if isinstance(value, str) and Path(value).is_file():
-            found.append(Path(value).read_bytes())
+        if isinstance(value, str) and os.path.isfile(value):
+            found.append(content(Path(value)))
         elif value in sources:
             found.append(sources[value].encode())
             if meshes and sources[value] == "folder":

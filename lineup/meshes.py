@@ -17,12 +17,16 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from ._files import content
 from .grid import FloatArray
+from .mesh_files import Beside, triangles
 
 FaceArray = NDArray[np.int64]
 
 FORMATS = (".obj", ".ply", ".stl", ".off", ".glb", ".gltf")
 """File name endings that `read_surface` takes."""
+LARGEST = 1e60
+"""Coordinates beyond it, and extents below its inverse, have volumes that no float holds."""
 
 _AXES = {
     f"{sign}{name}": np.where(np.arange(3) == axis, 1.0 if sign == "+" else -1.0, 0.0)
@@ -40,7 +44,8 @@ class Surface:
     vertices : (V, 3) float64
     faces : (F, 3) int64
     key : str
-        SHA-256 of the file or of the arrays, and what was done to them since.
+        SHA-256 of the file, with those that it names, or of the arrays, and what was done to them
+        since.
     provenance : dict
         What `VoxelSolid.source` will say about the input: plain JSON values.
     closed : bool
@@ -72,8 +77,9 @@ def surface_of(mesh: object) -> Surface:
     FileNotFoundError
         If there is no such file.
     ValueError
-        If the file name's ending is not one of `FORMATS`, or the mesh is of another type, empty,
-        flat, or not made of triangles with finite vertices.
+        If the file name's ending is not one of `FORMATS`, the file is spoilt or unfolds into more
+        than is read (docs/formats.md), or the mesh is of another type, empty, flat, or not made of
+        triangles with finite vertices of up to `LARGEST`.
     """
     if isinstance(mesh, Surface):
         return mesh
@@ -82,7 +88,7 @@ def surface_of(mesh: object) -> Surface:
     vertices, faces = _arrays_of(mesh)
     vertices, faces = _checked(vertices, faces, "the mesh")
     digest = hashlib.sha256(vertices.tobytes() + faces.tobytes()).hexdigest()
-    return _oriented(vertices, faces, digest, {"kind": "mesh", "sha256": digest})
+    return _oriented(vertices, faces, "the mesh", digest, {"kind": "mesh", "sha256": digest})
 
 
 def read_surface(path: Path) -> Surface:
@@ -99,16 +105,15 @@ def read_surface(path: Path) -> Surface:
 
 @lru_cache(maxsize=16)
 def _read(path: Path, mtime_ns: int) -> Surface:
+    name, beside = repr(path.name), Beside(path.parent)
     try:
-        # A file holding one mesh and a file holding a scene of placed meshes read alike.
-        mesh = trimesh.load_scene(path, process=False).to_mesh()
-        vertices, faces = np.asarray(mesh.vertices), np.asarray(mesh.faces)
-    except Exception as error:  # every reader of trimesh fails in its own way
-        why = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise ValueError(f"{path.name!r} cannot be read as a mesh: {why}") from error
-    vertices, faces = _checked(vertices, faces, repr(path.name))
-    digest = hashlib.sha256(path.read_bytes()).hexdigest()
-    return _oriented(vertices, faces, digest, {"kind": "mesh", "file": path.name, "sha256": digest})
+        data = content(path)
+        vertices, faces = triangles(data, path.suffix.lower(), beside)
+    except ValueError as error:
+        raise ValueError(f"{name} {error}") from error
+    digest = hashlib.sha256(b"".join([data, *beside.values()])).hexdigest()
+    provenance = {"kind": "mesh", "file": path.name, "sha256": digest}
+    return _oriented(*_checked(vertices, faces, name), name, digest, provenance)
 
 
 def _arrays_of(mesh: object) -> tuple[NDArray[Any], NDArray[Any]]:
@@ -146,47 +151,53 @@ def _checked(
             f"but it has only 0..{len(vertices) - 1}"
         )
     vertices = vertices.astype(np.float64)
+    reach = float(np.abs(vertices).max())
+    if reach > LARGEST or float(np.ptp(vertices, axis=0).max()) < 1 / LARGEST:
+        raise ValueError(
+            f"{name} has coordinates of up to {reach:.3g}, too large or too close together to "
+            "reckon with; another unit of length would do"
+        )
     used, faces = np.unique(faces, return_inverse=True)
-    vertices, faces = vertices[used], faces.reshape(-1, 3).astype(np.int64)
-    if not np.ptp(vertices, axis=0).all():
-        raise ValueError(f"{name} is flat: it spans no volume")
-    return vertices, faces
+    return vertices[used], faces.reshape(-1, 3).astype(np.int64)
 
 
 def _oriented(
-    vertices: FloatArray, faces: FaceArray, digest: str, provenance: dict[str, Any]
+    vertices: FloatArray, faces: FaceArray, name: str, digest: str, provenance: dict[str, Any]
 ) -> Surface:
     """Weld equal vertices and turn badly oriented faces outwards, counting them."""
-    welded, given = _welded(vertices, faces)
-    mesh = trimesh.Trimesh(welded, given, process=False)
-    part = _parts(given)
-    consistent = given
+    vertices, faces = _welded(vertices, faces, name)
+    mesh = trimesh.Trimesh(vertices, faces, process=False)
+    part = _parts(faces)
+    consistent = faces
     if not mesh.is_winding_consistent:
         trimesh.repair.fix_winding(mesh)  # type: ignore[no-untyped-call]
         consistent = np.array(mesh.faces)
         # A part follows its first face; where that one was among the few, follow the many.
-        away = np.bincount(part, weights=~_same_cycle(given, consistent)) * 2 > np.bincount(part)
+        away = np.bincount(part, weights=~_same_cycle(faces, consistent)) * 2 > np.bincount(part)
         consistent[away[part]] = consistent[away[part]][:, ::-1]
-    outwards = _turned_outwards(welded, consistent, part)
-    n_turned = int((~_same_cycle(given, outwards)).sum())
+    outwards = _turned_outwards(vertices, consistent, part)
+    n_turned = int((~_same_cycle(faces, outwards)).sum())
     return Surface(
-        vertices=np.ascontiguousarray(welded, np.float64),
+        vertices=np.ascontiguousarray(vertices, np.float64),
         faces=np.ascontiguousarray(outwards, np.int64),
         key=digest,
         provenance={**provenance, "faces_turned": n_turned},
-        closed=_boundary_free(outwards),
+        closed=not _on_boundary(outwards).any(),
         euler=int(mesh.euler_number) // 2 if mesh.is_watertight and part.max() == 0 else None,
     )
 
 
-def _welded(vertices: FloatArray, faces: FaceArray) -> tuple[FloatArray, FaceArray]:
+def _welded(vertices: FloatArray, faces: FaceArray, name: str) -> tuple[FloatArray, FaceArray]:
     """One vertex for all that agree to 1e-8 of the extent, and no face that this collapses."""
     low, extent = vertices.min(axis=0), np.ptp(vertices, axis=0).max()
     rounded = np.round((vertices - low) / extent * 1e8)
     _, first, index = np.unique(rounded, axis=0, return_index=True, return_inverse=True)
     faces = index.reshape(-1)[faces]
     distinct = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
-    return vertices[first], np.ascontiguousarray(faces[distinct])
+    vertices, faces = vertices[first], np.ascontiguousarray(faces[distinct])
+    if not faces.size or not np.ptp(vertices, axis=0).all():
+        raise ValueError(f"{name} is flat: it spans no volume")
+    return vertices, faces
 
 
 def _turned_outwards(vertices: FloatArray, faces: FaceArray, part: NDArray[Any]) -> FaceArray:
@@ -196,17 +207,18 @@ def _turned_outwards(vertices: FloatArray, faces: FaceArray, part: NDArray[Any])
     volumes = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6
     if volumes.sum() < 0:
         faces, volumes = faces[:, ::-1].copy(), -volumes
-    inverted = np.flatnonzero(np.bincount(part, weights=volumes) < 0)
-    for p in inverted:
-        mine = part == p
-        if not _boundary_free(faces[mine]):
-            continue
-        others = faces[~np.isin(part, inverted)]
-        around = igl.fast_winding_number(
-            vertices, np.ascontiguousarray(others), vertices[np.unique(faces[mine])]
-        )
-        if around.min() < 0.5:  # a part inside the others is the wall of a cavity, rightly inwards
-            faces[mine] = faces[mine][:, ::-1]
+    inverted = np.bincount(part, weights=volumes) < 0
+    if inverted.any():
+        owner = np.zeros(len(vertices), part.dtype)
+        owner[faces] = part[:, None]
+        others = np.ascontiguousarray(faces[~inverted[part]])
+        used = np.unique(faces[inverted[part]])
+        around = igl.fast_winding_number(vertices, others, vertices[used])
+        turned = np.zeros(len(inverted), np.bool_)
+        # A part inside the others is the wall of a cavity, rightly inwards.
+        turned[owner[used[around < 0.5]]] = True
+        turned[part[_on_boundary(faces)]] = False
+        faces[turned[part]] = faces[turned[part]][:, ::-1]
     return faces
 
 
@@ -227,14 +239,15 @@ def _same_cycle(a: FaceArray, b: FaceArray) -> NDArray[np.bool_]:
     return same
 
 
-def _boundary_free(faces: FaceArray) -> bool:
-    """Whether every edge is walked as often one way as the other."""
+def _on_boundary(faces: FaceArray) -> NDArray[np.bool_]:
+    """Which triangles have an edge that is walked more often one way than the other."""
     start, stop = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
     n = int(faces.max()) + 1
     edge = np.minimum(start, stop) * n + np.maximum(start, stop)
     _, index = np.unique(edge, return_inverse=True)
     balance = np.bincount(index, weights=np.where(start < stop, 1, -1))
-    return not bool(balance.any())
+    on_boundary: NDArray[np.bool_] = (balance[index] != 0).reshape(-1, 3).any(axis=1)
+    return on_boundary
 
 
 def turned_upright(surface: Surface, up: str | tuple[float, float, float]) -> Surface:

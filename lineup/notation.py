@@ -10,6 +10,9 @@ import numpy as np
 from . import grid
 from .kinematics import Move
 
+MOST_ANGLES = 2**27
+"""That a motion is read with: they may be packed a thousand to a letter."""
+
 _TOKEN = re.compile(
     r"(?P<kind>[ps])(?P<joint>\d{1,9})(?P<side>[+-])(?P<letter>[ENUWSD])"
     r"|d(?P<first>\d{1,9}):(?P<last>\d{1,9})(?P<turn>[+-])"
@@ -52,6 +55,8 @@ def packed(angles: grid.IntArray) -> str:
 
 def unpacked(text: str, n_rows: int, n_bars: int) -> grid.IntArray:
     """The (n_rows, n_bars) angles that `packed` wrote; a ValueError where it did not."""
+    if n_rows * n_bars > MOST_ANGLES:
+        raise ValueError(f"{n_rows * n_bars:,} angles, and up to {MOST_ANGLES:,} are read")
     n_bytes = 4 * n_rows * n_bars
     decoder = zlib.decompressobj()
     try:

@@ -15,6 +15,7 @@ import numpy as np
 import pandas as pd
 
 from . import grid
+from ._files import plain_name
 from ._record import listed, of_kind
 from .bounds import path_bound
 from .catalog import model
@@ -84,8 +85,9 @@ def lineup(
     Raises
     ------
     ValueError
-        If there are no models, two that would be stored under one name, fewer than two blocks, the
-        seed is negative, or the joints are of no known kind.
+        If there are no models, two that would be stored under one name, one under a name that no
+        file can have, fewer than two blocks, the seed is negative, or the joints are of no known
+        kind.
 
     Examples
     --------
@@ -102,6 +104,8 @@ def lineup(
         if len(set(names)) < len(names):
             listed = ", ".join(sorted(names))
             raise ValueError(f"two models would be stored under one name: {listed}")
+        for name in names:
+            plain_name(name)
         Path(folder).mkdir(parents=True, exist_ok=True)
     attempts = [
         _attempt(name, source, blocks, seed, folder, progress, ends, joints)
@@ -189,7 +193,8 @@ def transformations(
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     tell = progress or (lambda pair: None)
-    made = design.table.loc[design.table["failure"] == "", "model"]
+    named = design.table.loc[design.table["failure"] == "", "model"]
+    made = [plain_name(str(name)) for name in named]
     rows = []
     for (name, a), (other, b) in permutations(zip(made, design.foldings, strict=True), 2):
         tell(f"{name} to {other}")

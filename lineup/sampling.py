@@ -17,6 +17,13 @@ _PILOTS = (48, 96, 192)
 _SEEN = 500
 """Cells that must lie inside for a volume to be believed, and estimated from them."""
 _MOST_CELLS = 100_000_000
+_MOST_PILOT_CELLS = 12_000_000
+"""A plate 30,000 times as wide as thick takes so many to be seen at all."""
+_MOST_LINES = 2_000_000_000
+"""Vertical lines that are tried on all faces; a real mesh takes a tenth at most."""
+_MOST_AREA = 100
+"""Of all faces, in areas of the bounding box; a real mesh seldom has ten."""
+_HEAP = "the mesh has too many large faces, one above the other, to be sampled"
 _BATCH = 500_000
 _BLOCK = 4
 _MARGIN = 2
@@ -72,12 +79,18 @@ def sampled(surface: Surface, n_cells: int) -> Sampling:
     Raises
     ------
     ValueError
-        If the surface encloses too little volume for a lattice of 192^3 cells to see.
+        If the surface encloses too little volume for a lattice of 192^3 cells to see, is a plate
+        or a needle that takes too many cells, or a heap of large faces.
     """
-    box = float(np.prod(np.ptp(surface.vertices, axis=0)))
+    sides = np.ptp(surface.vertices, axis=0)
+    box = float(np.prod(sides))
+    u, v = np.diff(surface.vertices[surface.faces], axis=1).transpose(1, 0, 2)
+    area = float(np.linalg.norm(np.cross(u, v), axis=1).sum()) / 2
+    if area > _MOST_AREA * 2 * float((sides * np.roll(sides, 1)).sum()):
+        raise ValueError(_HEAP)
     for across in _PILOTS:
         pilot = (box / across**3) ** (1 / 3)
-        seen = float(_filled_cells(surface, pilot)[0].sum())
+        seen = float(_filled_cells(surface, pilot, _MOST_PILOT_CELLS)[0].sum())
         if seen >= _SEEN:
             break
     if seen < _SEEN:
@@ -150,7 +163,7 @@ def _voids(fill: NDArray[np.float32]) -> BoolArray:
 
 
 def _filled_cells(
-    surface: Surface, cell: float
+    surface: Surface, cell: float, most: int = 2 * _MOST_CELLS
 ) -> tuple[NDArray[np.float32], FloatArray, FloatArray]:
     """The share of each cell that is inside, the lattice's lowest corner, and a cell's edges."""
     low, high = surface.vertices.min(axis=0), surface.vertices.max(axis=0)
@@ -158,12 +171,15 @@ def _filled_cells(
     if surface.closed:
         # Whole cells across the bounding box: a face of the mesh in one of its planes is exact.
         n = np.maximum(1, np.round(extent / cell))
-        edges, shape = extent / n, n.astype(int) + 2 * _MARGIN
+        edges, shape = extent / n, n + 2 * _MARGIN
     else:
         edges = np.full(3, cell)
-        shape = _BLOCK * np.ceil((extent / cell + 2 * _MARGIN) / _BLOCK).astype(int)
+        shape = _BLOCK * np.ceil((extent / cell + 2 * _MARGIN) / _BLOCK)
+    if shape.prod() > most:
+        sides = " by ".join(f"{side:.3g}" for side in extent)
+        raise ValueError(f"the mesh is too thin to be sampled: its bounding box is {sides}")
     origin = (low + high) / 2 - shape * edges / 2
-    return _fill(surface, origin, edges, tuple(shape)), origin, edges
+    return _fill(surface, origin, edges, tuple(shape.astype(int))), origin, edges
 
 
 def _fill(
@@ -171,8 +187,12 @@ def _fill(
 ) -> NDArray[np.float32]:
     if not surface.closed:
         return _inside_open(surface, origin, float(edges[0]), shape).astype(np.float32)
+    vertices = (surface.vertices - origin) / edges
+    boxes = 1 + _COLUMNS * np.ptp(vertices[surface.faces, :2], axis=1)
+    if boxes.prod(axis=1).sum() > _MOST_LINES:
+        raise ValueError(_HEAP)
     fill = np.zeros(shape, np.float32)
-    _cross_columns((surface.vertices - origin) / edges, surface.faces, fill)
+    _cross_columns(vertices, surface.faces, fill)
     np.cumsum(fill, axis=2, out=fill)
     return np.clip(fill, 0, 1, out=fill)
 
@@ -256,16 +276,23 @@ def _side(a: FloatArray, b: FloatArray, x: float, y: float) -> tuple[float, floa
 
 @kernel
 def _mark_surface(vertices: FloatArray, faces: FaceArray, touched: BoolArray) -> None:
-    """Set unit cells so that each point of the surface is in one of them or in a neighbour."""
+    """Set unit cells so that each point of the surface is in one of them or in a neighbour.
+
+    Along lines parallel to the shortest edge, so that a needle takes no more steps than its area.
+    """
+    edge = np.empty(3)
     for f in range(faces.shape[0]):
-        a = vertices[faces[f, 0]]
-        u = vertices[faces[f, 1]] - a
-        v = vertices[faces[f, 2]] - a
-        longest = np.sqrt(max((u * u).sum(), (v * v).sum(), ((u - v) ** 2).sum()))
-        n = max(1, int(np.ceil(longest / 0.9)))
+        for e in range(3):
+            along = vertices[faces[f, (e + 1) % 3]] - vertices[faces[f, e]]
+            edge[e] = np.sqrt((along * along).sum())
+        short = int(edge.argmin())
+        tip = vertices[faces[f, (short + 2) % 3]]
+        first, last = vertices[faces[f, short]] - tip, vertices[faces[f, (short + 1) % 3]] - tip
+        n = max(1, int(np.ceil(edge.max() / 0.9)))
         for i in range(n + 1):
-            for j in range(n + 1 - i):
-                p = a + (i / n) * u + (j / n) * v
+            m = max(1, int(np.ceil(edge[short] * i / n / 0.9)))
+            for j in range(m + 1):
+                p = tip + (i / n) * (first + (j / m) * (last - first))
                 touched[int(p[0]), int(p[1]), int(p[2])] = True
 
 

@@ -20,8 +20,6 @@ from .solid import VoxelSolid
 Thickness = int | Sequence[int] | Callable[[int], int]
 """In voxels: one number, one for each layer from the lowest, or a function of the layer's z."""
 
-_TOUCHING = np.ones((3, 3, 3), bool)
-
 
 def shell(solid: VoxelSolid, thickness: Thickness = 2) -> VoxelSolid:
     """The solid without what lies deeper than `thickness`, vented at the bottom (Section 9).

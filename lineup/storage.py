@@ -12,23 +12,29 @@ import os
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Any, Literal, TypeAlias, TypeVar
 
 import numpy as np
 import pandas as pd
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
+from pydantic import BaseModel, ConfigDict, FailFast, Field, FiniteFloat, ValidationError
 
 from . import grid, notation
+from ._files import content, whole
 from .solid import Certificate, Design, Folding, Motion, VoxelPath, VoxelSolid
 
 Record: TypeAlias = VoxelSolid | VoxelPath | Motion | Folding | Design
 
 Whole = Annotated[int, Field(ge=-(2**30), le=2**30)]
 Positive = Annotated[int, Field(ge=1, le=2**30)]
-Letters = Annotated[str, Field(pattern=f"^[{grid.LETTERS}]*$", max_length=2**30)]
+Letters = Annotated[str, Field(pattern=f"^[{grid.LETTERS}]*$", max_length=2**24)]
 Point: TypeAlias = tuple[Whole, Whole, Whole]
 Number: TypeAlias = FiniteFloat | Literal["inf", "-inf"] | None
 Cell: TypeAlias = bool | int | FiniteFloat | str | None
+T = TypeVar("T")
+List = Annotated[list[T], FailFast()]  # of a million wrong entries, the first is enough
+
+MOST_CELLS = 2**28
+"""Of a grid that a file speaks of."""
 
 
 def save(obj: Record, file: str | os.PathLike[str]) -> Path:
@@ -101,10 +107,8 @@ def load(file: str | os.PathLike[str]) -> Record:
     [[0, 0, 0], [1, 0, 0], [1, 1, 0]]
     """
     file = _design_file(file)
-    if not file.is_file():
-        raise FileNotFoundError(f"no file {file}")
     try:
-        data = file.read_bytes()
+        data = content(file)
         return _document_of(_Header.model_validate_json(data)).model_validate_json(data).record()
     except ValidationError as error:
         raise ValueError(f"{file}: {first_error(error)}") from None
@@ -116,9 +120,8 @@ def write_whole(file: Path, text: str) -> Path:
     """Write a text file so that a reader meets the old file or the new one, never a part."""
     if not file.parent.is_dir():
         raise FileNotFoundError(f"no folder {file.parent} to write {file.name} into")
-    part = file.with_name(file.name + ".tmp")
-    part.write_text(text, encoding="utf-8")
-    os.replace(part, file)
+    with whole(file) as half:
+        half.write_text(text, encoding="utf-8")
     return file
 
 
@@ -173,6 +176,8 @@ class _Solid(_Document):
 
     def record(self) -> VoxelSolid:
         n = math.prod(self.shape)
+        if n > MOST_CELLS:
+            raise ValueError(f"a grid of {n:,} cells, and up to {MOST_CELLS:,} are read")
         n_bytes = -(-n // 8)
         if len(self.occupancy) != 4 * -(-n_bytes // 3):
             raise ValueError(
@@ -188,8 +193,8 @@ class _Path(_Document):
     version: Literal[1] = 1
     origin: Point
     letters: Letters
-    visits: list[tuple[Whole, Whole, Whole, Whole]]
-    dropped: list[Point]
+    visits: List[tuple[Whole, Whole, Whole, Whole]]
+    dropped: List[Point]
     refinement: Positive
     method: str
 
@@ -221,7 +226,7 @@ class _Motion(_Document):
     origin: Point
     letters: Letters
     moves: str
-    poses: list[Letters]
+    poses: List[Letters]
     diameter: FiniteFloat
     max_bend_deg: FiniteFloat
     straight: bool
@@ -256,15 +261,15 @@ class _Motion(_Document):
             raise ValueError(
                 f"pose {wrong} has {len(self.poses[wrong])} letters, not {last}, one for each bar"
             )
-        moves = [
+        moves = (
             notation.move(k, token, last, len(self.poses), self.n_angles)
             for k, token in enumerate(self.moves.split())
-        ]
+        )
         n_bars = last if self.poses else 0
         poses = np.array([notation.directions(pose) for pose in self.poses], np.int8)
         return Motion(
             notation.positions(self.origin, self.letters),
-            _rows(moves, 4),
+            np.fromiter(moves, np.dtype((np.int32, 4))),
             self.diameter,
             self.max_bend_deg,
             self.straight,
@@ -320,11 +325,11 @@ class _Certificate(_Document):
 class _Design(_Document):
     format: Literal["lineup-design"] = "lineup-design"
     version: Literal[1, 2] = 2
-    models: list[_Solid]
-    foldings: list[_Folding]
-    certificates: list[_Certificate]
-    columns: list[str]
-    rows: list[list[Cell]]
+    models: List[_Solid]
+    foldings: List[_Folding]
+    certificates: List[_Certificate]
+    columns: List[str]
+    rows: List[List[Cell]]
 
     @classmethod
     def of(cls, design: Any) -> _Design:

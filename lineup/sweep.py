@@ -16,7 +16,8 @@ from typing import Any, TypeAlias
 import pandas as pd
 
 from . import engines
-from ._sources import source_digest
+from ._files import clear
+from ._sources import digest, source_digest
 from .cluster import dask
 from .engines import Outcome, Report, Row
 from .experiment import TASKS, Experiment, Scalar, Task, function_of, key_of, tasks
@@ -45,7 +46,8 @@ def run_sweep(
     folder : path
         Each task has a folder of its own in it, with its result file and what it saved. A result
         is kept as long as the settings, the input files and the source code it came from are the
-        same; a failure is tried again by the next run. Interrupting loses only what is running.
+        same, and its files are as they were stored; a failure is tried again by the next run.
+        Interrupting loses only what is running.
     variant : str
         Name of the variant of the experiment to run in place of its main grids.
     engine : str
@@ -56,7 +58,8 @@ def run_sweep(
         Address of the Dask scheduler, for the engine "dask" alone. Its workers need this very
         version of the package, and where a setting names a mesh file, that file at that path.
     progress : callable
-        Called with a task and what happens to it: a stage, "done", "kept" or "failed: why".
+        Called with a task and what happens to it: a stage, "done", "kept" or "failed: why"; and
+        before it begins "made anew: why", if what was stored is spoilt.
 
     Returns
     -------
@@ -70,6 +73,9 @@ def run_sweep(
         possible value, or Dask is not installed.
     ConnectionError
         If the scheduler does not answer, has no workers or is lost.
+    OSError
+        If a result cannot be stored, as on a full disk; it names the file. What was stored before
+        is kept.
     """
     _check_engine(engine, workers, scheduler)
     tell = progress or (lambda task, text: None)
@@ -77,7 +83,10 @@ def run_sweep(
     results: dict[int, dict[str, Any]] = {}
     for task in tasks(experiment, Path(folder), variant):
         task.folder.mkdir(parents=True, exist_ok=True)
-        kept = _stored(task)
+        clear(task.folder)
+        kept, fault = _stored(task)
+        if fault:
+            tell(task, f"made anew: {fault}")
         if kept is None:
             todo.append(task)
         else:
@@ -156,21 +165,47 @@ def _outcomes(
     return dask(function, jobs, report, scheduler)
 
 
-def _stored(task: Task) -> dict[str, Any] | None:
-    """The result of an earlier run, if it is still good."""
+def _stored(task: Task) -> tuple[dict[str, Any] | None, str]:
+    """The result of an earlier run, if it is still good; and what is wrong where it is spoilt."""
+    if not task.file.exists():
+        return None, ""
     try:
-        result: dict[str, Any] = json.loads(task.file.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
-    good = isinstance(result, dict) and result.get("key") == task.key and not result["reason"]
-    return result if good else None
+        result = json.loads(task.file.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        result = None
+    if not isinstance(result, dict) or result.get("digest") != _digest(result):
+        return None, f"{task.file} is spoilt, or of an earlier version"
+    if result["key"] != task.key or result["reason"]:
+        return None, ""
+    for name, stored in result["files"].items():
+        try:
+            same = digest([(task.folder / name).read_bytes()]) == stored
+        except OSError:
+            same = False
+        if not same:
+            return None, f"{task.folder / name} is not what was stored"
+    return result, ""
 
 
 def _store(task: Task, outcome: Outcome) -> dict[str, Any]:
-    result = {"format": "lineup-row", "version": 1, "key": task.key, "settings": task.settings}
-    result |= plain(asdict(outcome))
+    clear(task.folder)
+    result = {"format": "lineup-row", "version": 2, "key": task.key, "settings": task.settings}
+    result |= plain(asdict(outcome)) | {"files": _files(task)}
+    result["digest"] = _digest(result)
     write_whole(task.file, json.dumps(result, indent=1) + "\n")
     return result
+
+
+def _files(task: Task) -> dict[str, str]:
+    """What the task saved: a digest of each file by its name, slashed, in the task's folder."""
+    found = sorted(f for f in task.folder.rglob("*") if f.is_file() and f != task.file)
+    return {f.relative_to(task.folder).as_posix(): digest([f.read_bytes()]) for f in found}
+
+
+def _digest(result: dict[str, Any]) -> str:
+    """Of all else that a result file says."""
+    said = {name: value for name, value in result.items() if name != "digest"}
+    return digest([json.dumps(said, sort_keys=True).encode()])
 
 
 def _table(results: list[dict[str, Any]]) -> pd.DataFrame:

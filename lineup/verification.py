@@ -9,7 +9,7 @@ import numpy as np
 
 from .judging import certify, certify_path, check_limits
 from .solid import Certificate, Design, Folding, Motion, VoxelPath, VoxelSolid
-from .storage import load
+from .storage import MOST_CELLS, load
 
 ENDINGS = tuple(f".{kind}.json" for kind in ("solid", "path", "motion", "folding", "design"))
 
@@ -92,7 +92,7 @@ def _own_solid(path: VoxelPath) -> VoxelSolid:
     voxels = np.vstack([path.voxels, path.dropped])
     if voxels.min() < 0:
         raise ValueError(f"a voxel of the path has a negative coordinate: {voxels.min()}")
-    if np.prod(voxels.max(axis=0) + 1, dtype=np.float64) > 2**30:
+    if np.prod(voxels.max(axis=0) + 1, dtype=np.float64) > MOST_CELLS:
         raise ValueError("the voxels of the path lie too far apart for one grid")
     occupancy = np.zeros(voxels.max(axis=0) + 1, bool)
     occupancy[tuple(voxels.T)] = True

@@ -86,8 +86,8 @@ def voxelize(
     FileNotFoundError
         If there is no such file.
     ValueError
-        If the mesh is empty, flat, not finite or of an unknown type, if `voxels` is not an integer
-        from 1 to 2,000,000, or if `up` is no direction.
+        If the mesh is empty, flat, thin beyond measure, not finite, spoilt or of an unknown type,
+        if `voxels` is not an integer from 1 to 2,000,000, or if `up` is no direction.
 
     Examples
     --------

@@ -34,6 +34,8 @@ def work(model: str, blocks: int, seed: int = 0, *, folder: Path, progress) -> d
         raise KeyboardInterrupt
     if model == "slow":
         time.sleep(PAUSE)
+    if model == "endless":
+        time.sleep(3600)
     (folder / f"{model}.txt").write_text("saved")
     return {"voxels": blocks * 2, "length": 2 * blocks + seed}
 

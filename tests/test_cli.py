@@ -94,10 +94,11 @@ def test_table2_quick_runs_the_experiment_file(lineup, fake, tmp_path, monkeypat
     assert (tmp_path / "results" / "table2-quick.png").is_file()
     rows = [tmp_path / f"results/table2-quick/{name}-200/row.json" for name in ("bunny", "cannon")]
     fine, failed = (json.loads(row.read_text()) for row in rows)
-    assert (fine["format"], fine["version"], fine["reason"]) == ("lineup-row", 1, "")
+    assert (fine["format"], fine["version"], fine["reason"]) == ("lineup-row", 2, "")
+    assert list(fine["files"]) == ["bunny.folding.json"]
     assert (failed["format"], failed["version"], failed["reason"]) == (
         "lineup-row",
-        1,
+        2,
         "no such mesh",
     )
     again = lineup("sweep", cli.EXPERIMENTS / "table2.yaml", "--variant=quick", "--engine=serial")
@@ -379,6 +380,7 @@ def test_progress_lines(terminal):
     now = [0.0]
     with Reporter(8, console, clock=lambda: now[0]) as tell:
         tell("h", "kept")
+        tell("a", "made anew: its file is spoilt")
         for name in "abcdefg":
             tell(name, "fold")
         now[0] = 10.0
@@ -392,6 +394,7 @@ def test_progress_lines(terminal):
     left = [" (about 60 s left)", " (about 2 min left)"] if not terminal else ["", ""]
     assert f"[2/8] a: done{left[0]}\n" in said
     assert f"[3/8] b: failed: [red] mesh{left[1]}\n" in said
+    assert "[1/8] a: made anew: its file is spoilt\n" in said
     assert ("[1/8] e: fold\n" in said) != terminal
     assert ("c: fold, d: fold, e: fold" in said) == terminal
     assert ("and 2 more" in said) == terminal

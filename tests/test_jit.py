@@ -6,6 +6,7 @@ import re
 import typing
 from pathlib import Path
 
+import numba
 import numpy as np
 import pytest
 from numba import TypingError
@@ -93,6 +94,77 @@ def test_a_part_that_makes_an_array_is_refused():
     sum_of = _jit.part(lambda n: np.zeros(n).sum())
     with pytest.raises(TypingError, match="NRT required but not enabled"):
         _jit.kernel(lambda n: sum_of(n))(3)
+
+
+def doubled(x):
+    return x + x
+
+
+@pytest.fixture
+def kept(tmp_path, monkeypatch):
+    """Calls a fresh kernel that keeps its code in a folder here: what it returns, and whether
+    the code was read; with the files kept so far."""
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path / "kernels"))
+
+    def call():
+        kernel = _jit.kernel(doubled)
+        return kernel(21), bool(kernel.stats.cache_hits)
+
+    return call, lambda ending: sorted(tmp_path.glob(f"kernels/*/*.{ending}"))
+
+
+def flipped(content):
+    spoilt = bytearray(content)
+    spoilt[len(spoilt) // 2] ^= 1
+    return bytes(spoilt)
+
+
+DAMAGES = {
+    "cut": lambda content: content[: len(content) // 2],
+    "empty": lambda content: b"",
+    "zeros": lambda content: bytes(len(content)),
+    "one bit": flipped,
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+@pytest.mark.parametrize("ending", ["nbi", "nbc"])
+def test_spoilt_machine_code_is_compiled_anew_and_this_is_told(kept, ending, damage):
+    call, files = kept
+    assert [call(), call()] == [(42, False), (42, True)]
+    (file,) = files(ending)
+    file.write_bytes(DAMAGES[damage](file.read_bytes()))
+    if (ending, damage) == ("nbi", "one bit"):  # may be a good index of something else
+        assert call()[0] == 42
+    else:
+        with pytest.warns(RuntimeWarning, match="kernels cannot be read, and is compiled anew"):
+            assert call() == (42, False)
+    assert call() == (42, True)
+
+
+def test_where_no_machine_code_can_be_kept_a_kernel_runs_and_this_is_told(kept, tmp_path):
+    call, _ = kept
+    (tmp_path / "kernels").touch()
+    with pytest.warns(
+        RuntimeWarning, match="kernels cannot be kept.* NUMBA_CACHE_DIR can name"
+    ) as told:
+        assert [call(), call()] == [(42, False)] * 2
+    assert len(told) == 1
+    assert not list(tmp_path.rglob("*.nb?"))
+
+
+def test_on_a_full_disk_a_kernel_runs_and_the_next_keeps_its_code(kept):
+    call, files = kept
+    resource = pytest.importorskip("resource")
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, limits[1]))
+    try:
+        with pytest.warns(RuntimeWarning, match="cannot be kept.*File too large"):
+            assert call() == (42, False)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert not files("nbc")
+    assert [call(), call()] == [(42, False), (42, True)]
 
 
 def is_counted(kind):

@@ -19,6 +19,7 @@ ROOT = Path(__file__).parents[1]
 ORDER = [
     *(
         "_record",
+        "_files",
         "_options",
         "_jit",
         "grid",
@@ -29,7 +30,8 @@ ORDER = [
         "notation",
         "judging",
     ),
-    *("meshes", "implicit", "shapes", "sampling", "shells", "voxelization", "catalog", "worked"),
+    *("mesh_files", "meshes", "implicit", "shapes", "sampling", "shells", "voxelization"),
+    *("catalog", "worked"),
     "looks",
     *("visits", "reeb", "planar", "linking", "assumptions", "paper", "spatial", "refinement"),
     *("layered", "bounds", "subset_sums", "contraction"),

@@ -1,5 +1,6 @@
 """Sweeps: what is run, what is kept, and that one bad task costs no other its result."""
 
+import json
 import os
 import signal
 import subprocess
@@ -9,6 +10,7 @@ from pathlib import Path
 
 import fake_tasks
 import pytest
+from disturbances import members, wait_until
 
 from lineup import experiment as experiments
 from lineup import sweep
@@ -80,12 +82,69 @@ def test_a_second_run_redoes_failures_only(calls, tmp_path):
     assert (tmp_path / "a-3" / "a.txt").read_text() == "saved"
 
 
-@pytest.mark.parametrize("damage", ["", "{", "[]", '{"key": "other"}'])
-def test_a_damaged_result_is_made_anew(calls, tmp_path, damage):
+def rows_said(change):
+    """A damage: the row file with its contents changed, otherwise as it was."""
+
+    def damage(folder):
+        file = folder / "row.json"
+        said = json.loads(file.read_text())
+        change(said)
+        file.write_text(json.dumps(said))
+
+    return damage
+
+
+def first_version(said):
+    said["version"] = 1
+    del said["files"], said["digest"]
+
+
+DAMAGES = {
+    "empty": lambda folder: (folder / "row.json").write_text(""),
+    "cut": lambda folder: (folder / "row.json").write_text("{"),
+    "a list": lambda folder: (folder / "row.json").write_text("[]"),
+    "of something else": lambda folder: (folder / "row.json").write_text('{"key": "other"}'),
+    "no row": rows_said(lambda said: said.pop("row")),
+    "no reason": rows_said(lambda said: said.pop("reason")),
+    "another digit": rows_said(lambda said: said["row"].update(length=7)),
+    "another setting": rows_said(lambda said: said["settings"].update(blocks=4)),
+    "another time": rows_said(lambda said: said.update(seconds=9.0)),
+    "of the first version": rows_said(first_version),
+    "spoilt file": lambda folder: (folder / "a.txt").write_text("Saved"),
+    "cut file": lambda folder: (folder / "a.txt").write_text(""),
+    "lost file": lambda folder: (folder / "a.txt").unlink(),
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_a_damaged_result_is_made_anew_and_this_is_told(calls, tmp_path, damage):
+    first = run_sweep(experiment("a", "b"), tmp_path)
+    DAMAGES[damage](tmp_path / "a-3")
+    told = []
+    again = run_sweep(
+        experiment("a", "b"), tmp_path, progress=lambda task, text: told.append((task.label, text))
+    )
+    assert again.equals(first)
+    assert calls() == ["a-3", "b-3", "a-3"]
+    file = "a.txt is not what was stored" if "file" in damage else "row.json is spoilt, or of an"
+    assert told[0][1].startswith("made anew: ")
+    assert f"a-3{os.sep}{file}" in told[0][1]
+    assert told[1:] == [("b-3", "kept"), ("a-3", "folding"), ("a-3", "done")]
+    assert (tmp_path / "a-3" / "a.txt").read_text() == "saved"
+
+
+def test_what_killed_writers_left_is_cleared(calls, tmp_path):
+    ended = subprocess.Popen([sys.executable, "-c", ""])
+    ended.wait()
     first = run_sweep(experiment("a"), tmp_path)
-    (tmp_path / "a-3" / "row.json").write_text(damage)
+    halves = [f"a-3/{name}.tmp" for name in (f"a.txt.{ended.pid}", f"row.json.{os.getpid()}")]
+    others = [f"a-3/{name}" for name in (f"a.txt.{os.getppid()}.tmp", "my.tmp", "my.1.txt")]
+    for name in (*halves, *others):
+        (tmp_path / name).touch()
     assert run_sweep(experiment("a"), tmp_path).equals(first)
-    assert calls() == ["a-3", "a-3"]
+    assert not [name for name in halves if (tmp_path / name).exists()]
+    assert all((tmp_path / name).exists() for name in others)
+    assert calls() == ["a-3"]
 
 
 def test_other_settings_input_or_source_are_other_tasks(calls, tmp_path, monkeypatch):
@@ -110,7 +169,7 @@ def test_other_settings_input_or_source_are_other_tasks(calls, tmp_path, monkeyp
 
 def test_source_files_follow_imports():
     names = [file.stem for file in source_files("lineup.storage")]
-    assert names == ["_record", "grid", "kinematics", "notation", "solid", "storage"]
+    assert names == ["_files", "_record", "grid", "kinematics", "notation", "solid", "storage"]
 
 
 def test_an_interrupted_run_resumes(calls, tmp_path):
@@ -140,14 +199,19 @@ def test_a_killed_run_loses_nothing_that_was_done(calls, tmp_path, monkeypatch):
     script = tmp_path / "script.py"
     script.write_text(SWEEP)
     environment = os.environ | {"PYTHONPATH": PLACES}
-    command = [sys.executable, script, tmp_path / "out"]
-    run = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True)
+    run = subprocess.Popen(
+        [sys.executable, script, tmp_path / "out"],
+        env=environment,
+        stdout=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
     said = []
     while said.count("done") < 3:
         said.append(run.stdout.readline().strip())
     run.kill()  # as by kill -9
     run.communicate(timeout=20)
-    time.sleep(0.5)  # what its processes had begun
+    wait_until(lambda: not members(run.pid))
     before = calls()
     monkeypatch.setattr(fake_tasks, "PAUSE", 0)
     whole = experiment("slow", blocks=range(1, 13))
@@ -192,6 +256,64 @@ def test_an_interrupt_ends_the_worker_processes_too(calls, tmp_path):
     assert 1 <= made < 40
     time.sleep(0.5)
     assert len(calls()) == made
+
+
+ENDLESS = """
+import sys
+from pathlib import Path
+
+from lineup import engines
+
+if __name__ == "__main__":
+    import late_task
+
+    jobs = [dict(model="endless", blocks=k, folder=Path(sys.argv[1])) for k in range(2)]
+    for _ in engines.processes(late_task.work, jobs, 2, lambda k, stage: print(k, flush=True)):
+        pass
+"""
+
+LATE = """
+import multiprocessing
+import time
+
+import fake_tasks
+
+if multiprocessing.current_process().name != "MainProcess":
+    time.sleep({seconds})
+
+
+def work(**job):
+    return fake_tasks.work(**job)
+"""
+
+
+@pytest.mark.parametrize(
+    ("end", "seconds"), [(signal.SIGKILL, 0), (signal.SIGTERM, 0), (signal.SIGINT, 0), (9, 3600)]
+)
+def test_no_process_outlives_a_run_that_is_ended(calls, tmp_path, end, seconds):
+    """Its workers are amid their jobs, or still import what they run."""
+    (tmp_path / "script.py").write_text(ENDLESS)
+    (tmp_path / "late_task.py").write_text(LATE.format(seconds=seconds))
+    run = subprocess.Popen(
+        [sys.executable, tmp_path / "script.py", tmp_path],
+        env=os.environ | {"PYTHONPATH": PLACES},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+        start_new_session=True,
+    )
+    try:
+        if seconds:
+            wait_until(lambda: len(members(run.pid)) == 4, seconds=20)  # one tracks resources
+            time.sleep(1)
+        else:
+            assert sorted(run.stdout.readline() for _ in range(2)) == ["0\n", "1\n"]
+        run.send_signal(end)
+        run.wait(timeout=20)
+        wait_until(lambda: not members(run.pid), seconds=5)
+    finally:
+        for pid in members(run.pid):
+            os.kill(pid, signal.SIGKILL)
 
 
 BAD = {

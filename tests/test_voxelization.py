@@ -183,6 +183,18 @@ def test_badly_oriented_faces_change_nothing_but_the_report(
     assert (good.source["faces_turned"], solid.source["faces_turned"]) == (0, turned)
 
 
+def test_every_point_of_a_needle_is_in_a_marked_cell_or_beside_one() -> None:
+    rng = np.random.default_rng(3)
+    for scale in [(30, 30, 30), (90, 2, 2), (1, 60, 60), (0.3, 0.3, 0.3)]:
+        triangles = rng.random((8, 3, 3)) * scale + 1
+        for corners in triangles:
+            touched = np.zeros((95, 65, 65), np.bool_)
+            sampling._mark_surface(corners, np.array([[0, 1, 2]]), touched)
+            beside = ndimage.binary_dilation(touched, np.ones((3, 3, 3), bool))
+            points = rng.dirichlet((1, 1, 1), 2000) @ corners
+            assert beside[tuple(points.astype(int).T)].all()
+
+
 def test_open_mesh_is_close_to_the_closed_one() -> None:
     open_ball = mesh_with(BALL, BALL.faces[60:])
     solid = lu.voxelize(open_ball, 100)

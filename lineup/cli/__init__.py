@@ -77,6 +77,10 @@ def run(args: list[str]) -> int:
         return _bad_use(f"{error.strerror}{where}" if error.strerror else str(error))
     except ValueError as error:
         return _bad_use(str(error))
+    except MemoryError as error:
+        return _bad_use(f"this takes more memory than there is: {error or 'out of memory'}")
+    except RecursionError:
+        return _bad_use("the input is nested too deeply")
     if code == 130:
         typer.echo("lineup: interrupted; what was finished is kept", err=True)
     return code or 0

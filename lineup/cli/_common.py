@@ -69,8 +69,9 @@ def readable(source: str) -> str:
 def solid_of(
     source: str, voxels: int, up: str | None = None, shell: int | None = None
 ) -> VoxelSolid:
-    """The solid stored in a file, or that of a mesh file or a model of the catalogue."""
+    """The solid stored in a file, or that of a mesh file or a model; files can have its name."""
     from .. import catalog, voxelization
+    from .._files import plain_name
     from ..shells import shell as hollowed
     from ..solid import VoxelSolid
     from ..storage import load
@@ -87,7 +88,7 @@ def solid_of(
         raise ValueError(f"{source} is made of voxels already, and cannot be turned by --up {up}")
     if shell is not None:
         stored = hollowed(stored, shell)
-    return stored if stored.name else replace(stored, name=stored_name(Path(source)))
+    return replace(stored, name=plain_name(stored.name or stored_name(Path(source))))
 
 
 def told(verdict: Certificate) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from glob import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -49,12 +50,13 @@ def _run_experiment(
     workers: int | None,
     scheduler: str | None = None,
 ) -> None:
+    from .._files import clear, plain_name
     from .._progress import Reporter
     from ..experiment import read_experiment, tasks
     from ..sweep import run_sweep
 
     experiment = read_experiment(file)
-    name = file.stem if variant is None else f"{file.stem}-{variant}"
+    name = plain_name(file.stem if variant is None else f"{file.stem}-{variant}")
     screen = console()
     todo = tasks(experiment, out / name, variant)
     with Reporter(len(todo), screen) as reporter:
@@ -67,6 +69,7 @@ def _run_experiment(
             scheduler=scheduler,
             progress=lambda task, stage: reporter(task.label, stage),
         )
+    clear(out, f"{escape(name)}*")
     write = _write_table2 if experiment.task == "table2" else _write_rows
     table, view, written = write(rows, todo, experiment, out, name)
     screen.print(view)

@@ -23,8 +23,9 @@ def animate(
 ) -> None:
     """Write a film of an unfolding, or of the way from shape to shape: NAME.gif."""
     from .. import draw
+    from .._files import plain_name
     from ..verification import stored_name
 
-    motion = motion_in(file)
-    written = draw.animation(motion, out / f"{stored_name(file)}.{kind}", pictures, seconds)
+    name = plain_name(f"{stored_name(file)}.{kind}")
+    written = draw.animation(motion_in(file), out / name, pictures, seconds)
     typer.echo(f"written: {written}")

@@ -25,7 +25,7 @@ from .regions import (
     _words,
 )
 
-_OVERLAP, _EITHER, _OTHER = "#9fd3a0", "#d8eed8", "#5cb85f"
+_EITHER, _OTHER = "#d8eed8", "#5cb85f"
 
 
 def overlap(mask: BoolArray, following: BoolArray, start: Cell) -> Figure:

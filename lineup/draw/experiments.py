@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from ..experiment import Plot
 from ..styled import check_names, heading, printed
-from .page import GREY, INK, PALE, page
+from .page import GREY, INK, PALE, literal, page
 
 _COLOURS = (
     *("#1b6ca8", "#d1495b", "#2c7a51", "#e0912f", "#7b5ea7", "#3ba7a0", "#8c5a3c", "#c06c9f"),
@@ -75,11 +75,11 @@ def _series(good: pd.DataFrame, by: list[str]) -> dict[str, pd.DataFrame]:
         ", ".join(printed(n, None if pd.isna(v) else v) for n, v in zip(by, values, strict=True))
         for values in good[by].astype(object).itertuples(index=False)
     ]
-    return {name: good[[own == name for own in names]] for name in dict.fromkeys(names)}
+    return {literal(n): good[[own == n for own in names]] for n in dict.fromkeys(names)}
 
 
 def _joined(by: list[str]) -> str:
-    return ", ".join(map(heading, by))
+    return literal(", ".join(map(heading, by)))
 
 
 def _colour(k: int) -> str:
@@ -122,21 +122,21 @@ def _dots(axes: Axes, good: pd.DataFrame, series: dict[str, pd.DataFrame], plot:
             ends = at - 0.4 * apart, at + 0.4 * apart
             axes.hlines(np.median(y[place == at]), *ends, color=_colour(k), linewidth=2.2)
     many = len(texts) > 7
-    axes.set_xticks(
-        range(len(texts)), texts, rotation=30 if many else 0, ha="right" if many else "center"
-    )
+    rotation, side = (30, "right") if many else (0, "center")
+    names = [literal(text) for text in texts]
+    axes.set_xticks(range(len(texts)), names, rotation=rotation, ha=side)
     for between in range(len(texts) - 1):
         axes.axvline(between + 0.5, color=PALE, linewidth=0.8)
 
 
 def _dress(axes: Axes, plot: Plot, title: str, marks: str) -> None:
     for axis, name, label in (("x", plot.x, plot.x_label), ("y", plot.y, plot.y_label)):
-        text: dict[str, Any] = {f"{axis}label": label or heading(name)}
+        text: dict[str, Any] = {f"{axis}label": literal(label or heading(name))}
         axes.set(**text)
         if axis in plot.log:
             axes.set(**{f"{axis}scale": "log"})
             _plain_ticks(axes, axis)
-    axes.set_title(title, loc="left", fontsize=12, fontweight="bold", color=INK)
+    axes.set_title(literal(title), loc="left", fontsize=12, fontweight="bold", color=INK)
     axes.grid(axis="y", color=PALE, linewidth=0.8)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)

@@ -7,6 +7,8 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from .. import _files
+
 
 def save(figure: Figure, file: str | os.PathLike[str]) -> Path:
     """Write a figure as PNG; equal figures give equal bytes, and no half-written file is left.
@@ -41,9 +43,5 @@ def whole(file: str | os.PathLike[str], ending: str) -> Iterator[Path]:
     if path.suffix.lower() != ending:
         raise ValueError(f"a picture of this kind is written as {ending}, got {path.name!r}")
     path.parent.mkdir(parents=True, exist_ok=True)
-    half = path.with_name(f"{path.name}.{os.getpid()}.tmp")
-    try:
+    with _files.whole(path) as half:
         yield half
-        os.replace(half, path)
-    finally:
-        half.unlink(missing_ok=True)

@@ -45,9 +45,14 @@ def picture(
     return axes
 
 
+def literal(text: str) -> str:
+    """A text for a figure as it stands: no dollar in it begins a formula."""
+    return text.replace("$", r"\$")
+
+
 def caption(axes: Axes, text: str) -> None:
     """The first line as a title, the others smaller under it, at the top of a picture."""
-    title, _, rest = text.partition("\n")
+    title, _, rest = literal(text).partition("\n")
     axes.set_title(title, y=1.0, pad=-22, fontsize=14, fontweight="bold", color=INK)
     axes.annotate(
         rest,

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from ..grid import FloatArray
 from ..stress.results import BUCKLING_N, TENSION_PA, Strength
 from ..stress.support import level_axes, upward
-from .page import GREY, INK, PALE, page, picture
+from .page import GREY, INK, PALE, literal, page, picture
 from .view import Body, Cubes, View, view_of
 
 _WIDTH, _HEIGHT = 11.0, 6.6  # inches
@@ -126,7 +126,7 @@ def _head(axes: Axes, result: Strength) -> None:
     axes.axis("off")
     setting = result.setting
     title = f"{result.name or 'folded chain'} {result.reason}"
-    axes.text(0, 0.8, title, fontsize=14, fontweight="bold", color=INK, va="center")
+    axes.text(0, 0.8, literal(title), fontsize=14, fontweight="bold", color=INK, va="center")
     body = f"{len(result.voxels):,} voxels of {setting.pitch_mm:g} mm, {result.mass_kg:.2f} kg. "
     if setting.held is None:
         body += (

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import os
 import zipfile
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -12,6 +11,7 @@ from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 
+from .._files import whole
 from ..block import Part
 from ..grid import FloatArray
 from .placing import Placed
@@ -86,16 +86,14 @@ def write_3mf(
         out.write(f'<component objectid="{number[key]}" transform="{transform}"/>\n')
     out.write("</components>\n</object>\n</resources>\n")
     out.write(f'<build>\n<item objectid="{chain}"/>\n</build>\n</model>\n')
-    return _write_whole(
-        file,
-        _zipped(
-            {
-                "[Content_Types].xml": _TYPES,
-                "_rels/.rels": _RELATIONS,
-                "3D/3dmodel.model": out.getvalue(),
-            }
-        ),
-    )
+    texts = {
+        "[Content_Types].xml": _TYPES,
+        "_rels/.rels": _RELATIONS,
+        "3D/3dmodel.model": out.getvalue(),
+    }
+    with whole(file) as half:
+        half.write_bytes(_zipped(texts))
+    return file
 
 
 def _write_object(out: io.StringIO, number: int, material: int, painted: Painted) -> None:
@@ -139,15 +137,13 @@ def write_stl(
     corners = {name: part.vertices[part.faces] for name, part in parts.items()}
     places = tuple(places)
     count = sum(len(corners[place.part]) for place in places)
-    part_file = _partial(file)
-    with part_file.open("wb") as out:
+    with whole(file) as half, half.open("wb") as out:
         out.write(b"LineUp, millimetres".ljust(80))
         out.write(np.uint32(count).astype("<u4").tobytes())
         for place in places:
             out.write(
                 _stl_records(corners[place.part] @ place.rotation.T + place.offset_mm + shift)
             )
-    os.replace(part_file, file)
     return file
 
 
@@ -158,14 +154,3 @@ def _stl_records(corners: FloatArray) -> bytes:
     records["normal"] = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
     records["corners"] = corners
     return records.tobytes()
-
-
-def _write_whole(file: Path, content: bytes) -> Path:
-    part_file = _partial(file)
-    part_file.write_bytes(content)
-    os.replace(part_file, file)
-    return file
-
-
-def _partial(file: Path) -> Path:
-    return file.with_name(file.name + ".tmp")

@@ -19,7 +19,7 @@ from .guide import guide_page
 from .sheets import Sheet
 from .step_pages import step_page
 
-_STYLE: Any = {"pdf.fonttype": 42, "font.family": "DejaVu Sans"}
+_STYLE: Any = {"pdf.fonttype": 42, "font.family": "DejaVu Sans", "text.parse_math": False}
 
 
 def write_booklet(

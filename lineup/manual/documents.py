@@ -13,7 +13,7 @@ from pydantic_core import PydanticCustomError
 
 from .. import grid
 from ..solid import Certificate
-from ..storage import plain
+from ..storage import List, plain
 from .actions import ENDS
 from .assembly import Assembly
 from .grade import grade_of
@@ -39,7 +39,7 @@ class _Part(BaseModel):
 class StretchRow(_Part):
     """Blocks that one end lays without a break, after the loose ends have swung."""
 
-    swings: list[str]
+    swings: List[str]
     end: Annotated[str, Field(pattern="^(head|tail)$")]
     first_block: Count
     last_block: Count
@@ -51,8 +51,8 @@ class StepRow(_Part):
     """One step: a page of the booklet."""
 
     step: Count
-    stretches: list[StretchRow]
-    layers: list[Count]
+    stretches: List[StretchRow]
+    layers: List[Count]
     voxels: Count
     last_block: Count
     last_place: Place
@@ -97,8 +97,8 @@ class Document(_Part):
     build: BuildRow
     base: tuple[Place, Place]
     grade: dict[str, Count]
-    steps: list[StepRow]
-    rows: list[BlockRow]
+    steps: List[StepRow]
+    rows: List[BlockRow]
 
 
 def document_of(assembly: Assembly, verdict: Certificate, model: str) -> Document:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import os
 from dataclasses import replace
 from pathlib import Path
@@ -12,6 +13,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from .. import grid
+from .._files import content
 from ..joints import slot_violations
 from ..kinematics import Move
 from ..motion.plan import DIAMETER, MAX_BEND_DEG, Row, inward_bar
@@ -68,14 +70,12 @@ def read_manual(file: str | os.PathLike[str]) -> Folding:
     True
     """
     file = Path(file)
-    if not file.is_file():
-        raise FileNotFoundError(f"no file {file}")
     if file.suffix not in (".json", ".csv"):
         raise ValueError(f"{file}: a manual is read from .json or .csv")
     try:
         if file.suffix == ".csv":
             return _followed(_csv_rows(file), DIAMETER, MAX_BEND_DEG)
-        document = Document.model_validate_json(file.read_bytes())
+        document = Document.model_validate_json(content(file))
         folding = _followed(document.rows, document.diameter, document.max_bend_deg)
         _check_document(document, folding)
         return folding
@@ -87,18 +87,18 @@ def read_manual(file: str | os.PathLike[str]) -> Folding:
 
 def _csv_rows(file: Path) -> list[BlockRow]:
     rows = []
-    with file.open(encoding="utf-8", newline="") as text:
-        reader = csv.DictReader(text, restkey="beyond", strict=True)
-        try:
-            names = reader.fieldnames or []
-            missing = [name for name in BlockRow.model_fields if name not in names]
-            if missing:
-                raise ValueError(f"no column {missing[0]}: {READS}")
-            for k, entries in enumerate(reader, start=1):
-                given = {name: entry for name, entry in entries.items() if entry is not None}
-                rows.append(_csv_row(k, given))
-        except csv.Error as error:
-            raise ValueError(str(error)) from None
+    text = io.StringIO(content(file).decode(), newline="")
+    reader = csv.DictReader(text, restkey="beyond", strict=True)
+    try:
+        names = reader.fieldnames or []
+        missing = [name for name in BlockRow.model_fields if name not in names]
+        if missing:
+            raise ValueError(f"no column {missing[0]}: {READS}")
+        for k, entries in enumerate(reader, start=1):
+            given = {name: entry for name, entry in entries.items() if entry is not None}
+            rows.append(_csv_row(k, given))
+    except csv.Error as error:
+        raise ValueError(str(error)) from None
     return rows
 
 

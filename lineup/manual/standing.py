@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from .._files import content
 from ..stress import Bonding, standing
 from ..stress.results import DENSITY
 from .documents import Document
@@ -58,7 +59,7 @@ def standing_by_step(
     if file.suffix != ".json":
         raise ValueError(f"{file} has no steps; give the NAME.manual.json written with it")
     folding = read_manual(file)
-    document = Document.model_validate_json(file.read_text(encoding="utf-8"))
+    document = Document.model_validate_json(content(file))
     moves = [step.moves for step in document.steps]
     table = standing(
         folding, moves, pitch_mm, density=density, bonding=bonding, up=_UP[document.build.down]

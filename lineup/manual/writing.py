@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from .._files import plain_name
 from ..judging import certify
 from ..solid import Folding
 from ..storage import write_whole
@@ -128,8 +129,7 @@ def _laid_out(
     folding: Folding, name: str, paper: str, pitch_mm: float
 ) -> tuple[Assembly, Document]:
     check_sheet(paper, pitch_mm)
-    if not name or name != Path(name).name:
-        raise ValueError(f"name must be that of a file without folders, got {name!r}")
+    plain_name(name)
     assembly = assembly_of(folding)
     motion = assembly.folding.motion
     verdict = certify(motion, motion.diameter, motion.max_bend_deg, joints=assembly.joints)
