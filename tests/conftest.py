@@ -1,6 +1,7 @@
 """Settings of every test run."""
 
 import os
+import signal
 import sys
 
 from examples import THOROUGH
@@ -18,6 +19,9 @@ settings.load_profile("lineup")
 os.environ.setdefault("MPLBACKEND", "agg")
 if sys.platform == "linux" and not os.environ.get("DISPLAY"):
     os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+
+# Where the tests run in the background interrupts may be ignored, and some of them interrupt.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_collection_finish():
