@@ -37,6 +37,7 @@ def planted(old, new, test="tests/test_bounds.py::test_a_star_has_a_path_of_thre
     return mutants.Mutant("planted", "", "lineup/bounds.py", old, new, (test,))
 
 
+@pytest.mark.slow
 def test_a_fault_is_caught_and_a_change_that_is_none_survives():
     faults = [
         planted("number) + 1)", "number))"),
@@ -47,6 +48,7 @@ def test_a_fault_is_caught_and_a_change_that_is_none_survives():
     assert said == [mutants.CAUGHT, mutants.SURVIVED, mutants.NOT_RUN]
 
 
+@pytest.mark.slow
 def test_tests_that_fail_without_a_mutant_prove_nothing():
     with pytest.raises(ValueError, match="without a mutant its tests do not all pass"):
         list(mutants.verdicts([planted("number) + 1)", "number))", "tests/test_bounds.py::none")]))
