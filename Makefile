@@ -43,6 +43,9 @@ bench: $(STAMP)  ## Each stage beside other tools, and how its time grows: resul
 	$(BIN)/python benchmarks/ratios.py
 	$(BIN)/python benchmarks/stages.py
 
+mutants: $(STAMP)  ## Faults planted all over the core, and whether the tests find them: results/mutants.md
+	$(BIN)/python tests/mutants.py
+
 site: $(STAMP)  ## The documentation: site/html/docs/index.html
 	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going -c docs . site/html
 
@@ -73,4 +76,4 @@ $(STAMP): pyproject.toml constraints.txt
 	@$(BIN)/python -c 'import lineup as lu; lu.lineup(["duck"], blocks=40)'
 	@touch $@
 
-.PHONY: reproduce test lint lab notebooks bench experiments site setup clean help
+.PHONY: reproduce test lint lab notebooks bench mutants experiments site setup clean help

@@ -130,6 +130,11 @@ def test_a_tongue_lies_where_the_next_plate_has_its_groove():
     first, second = plates(6, PAPER, (45.0, 25.0))
     tongue, groove = pieces_on(first, PAPER)[-1], pieces_on(second, PAPER)[0]
     assert (tongue.part, groove.part) == ("tongue", "groove")
+    middle, hinge, *_ = (body(piece, PAPER) for piece in pieces_on(first, PAPER)[2:])
+    at_groove, next_hinge = (body(piece, PAPER) for piece in pieces_on(second, PAPER)[:2])
+    gap = middle.min_gap(hinge, 5)
+    assert gap > 0
+    assert at_groove.min_gap(next_hinge, 5) == pytest.approx(gap)
     # Put together in the frame of the middle, they are it, but for the seam.
     fitted = [
         body(piece, PAPER)

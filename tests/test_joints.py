@@ -191,6 +191,8 @@ def test_a_bend_goes_on_out_of_the_slots():
     """The hinges beside capsule 1, which lies along z, turn apart and then as one."""
     rows = np.array([[0, 0, QUARTER], [0, 0, 5], [7, 0, 12]])
     assert slot_violations(bent(walk("EUN"), 2, rows, False)).tolist() == [[0, 1], [1, 1]]
+    rows = np.array([[0, 0, QUARTER], [0, 0, 2 * QUARTER]])  # from square to square
+    assert slot_violations(bent(walk("EUN"), 2, rows, False)).tolist() == [[0, 1]]
 
 
 def test_half_a_block_is_refused():

@@ -118,6 +118,11 @@ FAULTS = {
         0,
         "come within 0, less than the diameter 0.999",
     ),
+    "peel into what it carries": (
+        one("EESWW", (Move.PEEL, 0, 1, NORTH)),
+        0,
+        "bars 0 and 3 come within 0,",
+    ),
     "rod tip rises past a voxel": (
         motion(ROD_TIP_RISES, [(Move.PEEL, 7, 8, UP)]),
         0,
@@ -127,6 +132,11 @@ FAULTS = {
         one("EEEEUNNWD", (Move.SWING, 4, 3, NORTH)),
         0,
         "bars 1 and 8 come within 0,",
+    ),
+    "arc through the middle of a bar": (
+        one("NNWWDSSSEEEU", (Move.SWING, 9, 10, NORTH)),
+        0,
+        "bars 0 and 11 come within 0,",
     ),
     "limb of a door touches": (
         one("DDESENUWU", (Move.DOOR, 3, 6, -1)),
@@ -187,9 +197,9 @@ FAULTS = {
     ),
     "unknown kind": (altered(FLAT, 2, (9, 26, 27, 1)), 2, "malformed: (9, 26, 27, 1) is of no"),
     "door off the lattice lines": (
-        one("ENUU", (Move.DOOR, 0, 4, 1)),
+        one("ENWUE", (Move.DOOR, 0, 5, 1)),
         0,
-        "malformed: (DOOR, 0, 4, 1) must turn by value 1 or -1 about a lattice line",
+        "malformed: (DOOR, 0, 5, 1) must turn by value 1 or -1 about a lattice line",
     ),
     "door by a half turn": (
         one("ENW", (Move.DOOR, 0, 3, 2)),

@@ -5,7 +5,7 @@ import os
 import numpy as np
 import pytest
 from all_pairs import move_clearance, outcome
-from chains import boustrophedon, motion, peeled, peeled_from_both_ends, turns, wander
+from chains import boustrophedon, motion, peeled, peeled_from_both_ends, turns, walk, wander
 from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -67,6 +67,7 @@ def there_and_back(unfold, fold):
     return motion(unfold.start, moves, straight=False)
 
 
+PEEL, SWING, DOOR = kinematics.Move.PEEL, kinematics.Move.SWING, kinematics.Move.DOOR
 UP, NORTH = grid.LETTERS.index("U"), grid.LETTERS.index("N")
 BLOCK, SHEET = boustrophedon(4, 3, 5), boustrophedon(10, 6, 1)
 LONG = {
@@ -145,3 +146,33 @@ def test_faults_in_the_motion_of_a_mesh(folding, fault):
 @pytest.fixture(scope="module")
 def folding():
     return lu.fold(lu.model("bunny", voxels=800))
+
+
+def rested(joints, moves):
+    """A chain under a sheet that, once its last bar has waved for long, is a body found by place.
+
+    Of its last three joints a hinge, a corner sqrt(2) from it, and the bar that waves.
+    """
+    sheet = [(-(2 - x if y % 2 == 0 else x), y, 0) for y in range(17, 3, -1) for x in range(3)]
+    start = np.array([*sheet, *joints])
+    last = len(start) - 1
+    waves = [(PEEL, last - 1, last, UP), (PEEL, last - 1, last, NORTH)] * 60
+    moves = [(kind, joint % len(start), other % len(start), to) for kind, joint, other, to in moves]
+    return lu.certify(motion(start, [*waves, *moves], False), 0.5)
+
+
+def test_a_corner_that_passes_between_lattice_points_is_seen_by_place():
+    joints = walk("SSWWSSEEEN", (0, 4, 0))[1:]
+    verdict = rested(joints, [(SWING, -3, -2, NORTH)])
+    assert verdict.clearance == pytest.approx(2 - np.sqrt(2))
+    assert verdict.nearest[0] == 120
+
+
+def test_a_limb_of_the_body_is_seen_where_it_has_turned_to():
+    """A bump of two bars' width turns down into the way of the corner."""
+    joints = walk("SUWDWSSSEEEN", (0, 4, 0))[1:]
+    door, swing = (DOOR, -12, -9, -1), (SWING, -3, -2, NORTH)
+    assert rested(joints, [swing]).clearance == 1
+    verdict = rested(joints, [door, swing])
+    assert verdict.clearance == pytest.approx(2 - np.sqrt(2))
+    assert verdict.nearest[0] == 121

@@ -90,6 +90,7 @@ FAULTS = {
     "gap": ({"voxels": np.delete(NESTED, 9, axis=0)}, 8, "voxels 8 and 9 do not share a face"),
     "odd length": ({"voxels": NESTED[:-1]}, 14, "15 voxels, not an even number"),
     "outside the solid": ({"voxels": walk("EU")[1:]}, 1, "voxel (1, 0, 1) of step 1 is outside"),
+    "begins outside": ({"voxels": walk("EU")[:0:-1]}, 0, "voxel (1, 0, 1) of step 0 is outside"),
     "outside the grid": ({"voxels": walk("EEEES")}, 4, "voxel (4, 0, 0) of step 4 is outside"),
     "below the grid": ({"voxels": walk("WWN")}, 1, "voxel (-1, 0, 0) of step 1 is outside"),
     "wrong refinement": ({"refinement": 2}, -1, "the refined solid has "),

@@ -70,6 +70,7 @@ def test_what_each_kind_does_by_hand():
         shown["swing"][1][2:], [(1, 1, 0), (1, 2, 0), (2, 2, 0), (2, 3, 0), (2, 3, -1)]
     )
     assert_array_equal(shown["door"][1][1:5], [(1, 0, 0), (1, -1, 0), (2, -1, 0), (2, 0, 0)])
+    assert_array_equal(shown["door"][2], HAIRPIN)
     assert_array_equal(shown["tilt"][1], [(0, 0, z) for z in range(7)])
 
 

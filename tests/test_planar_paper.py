@@ -216,6 +216,23 @@ def test_operation_3_takes_a_free_cell_for_another():
     assert not nest.links[2, 0]
 
 
+def test_extend_takes_free_cells_two_by_two():
+    """Right of a square two free cells and two beyond them; above it one that is free, one not."""
+    links = linked([(0, 0), (1, 0), (1, 1), (0, 1)], [(1, 2), (2, 2), (2, 3), (1, 3)])
+    links |= {cell: set() for cell in [(2, 0), (2, 1), (3, 0), (3, 1), (0, 2)]}
+    taken = zhang_liu._extend(links, [(0, 0), (1, 0), (1, 1), (0, 1)])
+    assert {cell for cell, _ in taken} == {(2, 0), (2, 1), (3, 0), (3, 1)}
+    assert not links[0, 2]
+    assert all(len(links[cell]) == 2 for cell in links if cell != (0, 2))
+
+
+def test_no_operation_joins_a_cycle_with_itself():
+    """The middle square of a ring of 2 by 4 cells has links of it on two sides."""
+    nest = zhang_liu.Nest(linked(BOX, [(0, 0), (3, 0), (3, 1), (0, 1)]))
+    assert not nest.merge_a_leaf()
+    assert sizes(nest) == [8, 72]
+
+
 def test_the_tree_says_which_cycle_is_around_which():
     def box(low, high):
         return [(low, low), (high, low), (high, high), (low, high)]

@@ -47,6 +47,9 @@ def motions(draw):
         np.array([notation.directions(p) for p in poses], np.int8).reshape(
             len(poses), last if poses else 0
         ),
+        goal=notation.positions(draw(ORIGINS), word[::-1] if draw(st.booleans()) else word)
+        if draw(st.booleans())
+        else np.empty((0, 3), np.int32),
     )
 
 

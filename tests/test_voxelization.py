@@ -213,6 +213,16 @@ def test_blocks_far_from_an_open_surface_are_decided_rightly() -> None:
     np.testing.assert_array_equal(inside.ravel(), surface.winding(centres) > 0.5)
 
 
+def test_inside_of_an_open_surface_is_where_it_winds_more_than_half_round() -> None:
+    surface = meshes.surface_of(mesh_with(BALL, BALL.faces[400:]))
+    origin, cell, shape = np.full(3, -1.4), 0.1, (28, 28, 28)
+    centres = origin + (np.indices(shape).reshape(3, -1).T + 0.5) * cell
+    winding = surface.winding(centres)
+    assert ((winding > 0.2) & (winding < 0.5)).sum() > 1000
+    inside = sampling._inside_open(surface, origin, cell, shape)
+    np.testing.assert_array_equal(inside.ravel(), winding > 0.5)
+
+
 def test_overlapping_bodies_count_once_even_if_one_is_inside_out() -> None:
     across = trimesh.creation.box((1, 2, 1))
     plus = lu.voxelize(trimesh.util.concatenate([BOX, across]), 350)
