@@ -85,6 +85,7 @@ def forked(*args, before=lambda: None):
 
 def _speak(args, before, pipe):
     sys.stdout = sys.stderr = os.fdopen(pipe.fileno(), "w", buffering=1, closefd=False)
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # some libraries leave another
     before()
     sys.exit(cli.run(args))
 
