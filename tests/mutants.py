@@ -99,7 +99,9 @@ def verdict(mutant: Mutant, folder: Path) -> str:
     file = folder / mutant.file
     file.write_text(broken(mutant), encoding="utf-8")
     try:
-        return VERDICTS.get(tested(folder, mutant.tests).returncode, NOT_RUN)
+        said = tested(folder, mutant.tests)
+        ran = "ERROR collecting" not in said.stdout
+        return VERDICTS.get(said.returncode, NOT_RUN) if ran else NOT_RUN
     finally:
         shutil.copy2(ROOT / mutant.file, file)  # with its date, by which kernels are kept
 
