@@ -33,7 +33,7 @@ SECONDS = 300
 
 CAUGHT, SURVIVED, NOT_RUN = "caught", "survived", "did not run"
 VERDICTS = {0: SURVIVED, 1: CAUGHT}
-"""By pytest's exit code; any other one says nothing of the mutant, as where a module fails."""
+"""By pytest's exit code; any other one says nothing of the mutant, nor does a file that fails."""
 
 
 @dataclass(frozen=True)
@@ -78,13 +78,17 @@ def copied(folder: Path, compiled: bool) -> Path:
 
 
 def tested(folder: Path, tests: tuple[str, ...]) -> subprocess.CompletedProcess[str]:
-    """Run tests of a copy, by its own package, and with no trace outside of the copy."""
+    """Run tests of a copy."""
     options = ("-q", "-x", "-p", "no:cacheprovider", "--disable-warnings")
-    command = [sys.executable, "-m", "pytest", *options, *tests]
+    return run(folder, "-m", "pytest", *options, *tests)
+
+
+def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run Python in a copy, by its own package, and with no trace outside of the copy."""
     apart = {"PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
     apart["XDG_CACHE_HOME"] = str(folder.parent / "cache")
     return subprocess.run(
-        command,
+        [sys.executable, *arguments],
         cwd=folder,
         env=os.environ | apart,
         capture_output=True,
@@ -99,9 +103,10 @@ def verdict(mutant: Mutant, folder: Path) -> str:
     file = folder / mutant.file
     file.write_text(broken(mutant), encoding="utf-8")
     try:
-        said = tested(folder, mutant.tests)
-        ran = "ERROR collecting" not in said.stdout
-        return VERDICTS.get(said.returncode, NOT_RUN) if ran else NOT_RUN
+        module = mutant.file.removesuffix(".py").replace("/", ".").removesuffix(".__init__")
+        if run(folder, "-c", f"import {module}").returncode:
+            return NOT_RUN
+        return VERDICTS.get(tested(folder, mutant.tests).returncode, NOT_RUN)
     finally:
         shutil.copy2(ROOT / mutant.file, file)  # with its date, by which kernels are kept
 
